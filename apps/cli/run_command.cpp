@@ -28,7 +28,7 @@ struct RunArguments {
   bool is_realtime = false;
   attempt::RealtimeOptions realtime;
   std::string key_file, server_key_file;
-  double patience_s = 5.0;
+  double timeout_s = 5.0;
   NamedOptions named;
   std::string person, database;
 };
@@ -198,7 +198,7 @@ Status check_servers(RunArguments& a) {
     TROCAR_TRY(security.server_key, link::load_public_key(a.server_key_file));
     a.realtime.security = std::move(security);
   }
-  a.realtime.timeout = std::chrono::milliseconds(static_cast<int>(1000.0 * a.patience_s));
+  a.realtime.timeout = std::chrono::milliseconds(static_cast<int>(1000.0 * a.timeout_s));
   return attempt::check_realtime(a.realtime);
 }
 
@@ -304,7 +304,7 @@ void add_server_options(Command& command, RunArguments& a) {
       .one_value_each();
   command.add_option("--keys", a.key_file, "Your private key file, for servers on other machines (trocar link keygen)");
   command.add_option("--server-key", a.server_key_file, "The servers' public key");
-  command.add_option("--patience", a.patience_s, "Time without messages until a server counts as lost")
+  command.add_option("--patience", a.timeout_s, "Time without messages until a server counts as lost")
       .number_within(0.1, 600.0, "s")
       .show_default();
 }

@@ -52,10 +52,10 @@ class RealtimeSession : public ::testing::Test {
     return options;
   }
   Result<attempt::RunResult> perform_live(const std::string& operator_name, const std::vector<std::string>& endpoints,
-                                          milliseconds patience, const Progress& progress = {}) const {
+                                          milliseconds timeout, const Progress& progress = {}) const {
     attempt::RealtimeOptions realtime;
     realtime.endpoints = endpoints;
-    realtime.timeout = patience;
+    realtime.timeout = timeout;
     return attempt::run_realtime_session(*the_case, run_options(operator_name), realtime, progress);
   }
   storage::Session recorded() const {

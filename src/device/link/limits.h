@@ -22,9 +22,9 @@ inline constexpr std::size_t kMostBytesOut = 1280 * 1024;
 inline constexpr std::size_t kMostReplyBytesOut = 1 << 20;
 
 // Connections and clients. [assumed]
-inline constexpr std::size_t kMostStrangers = 16;   ///< Connections that have not sent Hello.
-inline constexpr std::size_t kMostControllers = 4;  ///< Clients that request control; one of them has it.
-inline constexpr std::size_t kMostWatchers = 8;     ///< Clients that do not request control.
+inline constexpr std::size_t kMostUnauthenticated = 16;  ///< Connections that have not sent Hello.
+inline constexpr std::size_t kMostControllers = 4;       ///< Clients that request control; one of them has it.
+inline constexpr std::size_t kMostWatchers = 8;          ///< Clients that do not request control.
 inline constexpr double kMostAcceptedPerS = 100.0;
 inline constexpr double kMostAcceptedAtOnce = 16.0;
 inline constexpr double kMostRefusalsPerS = 10.0;  ///< Refusals of invalid messages, for one connection.

@@ -212,7 +212,7 @@ void ServerSocket::send_reply(std::uint64_t session, const Reply& reply) {
 
 void ServerSocket::drop_lost(double now_s) {
   impl_->peers.forget_lost(now_s, kForgotten_s);
-  impl_->connections.drop_strangers(now_s);
+  impl_->connections.drop_unauthenticated(now_s);
 }
 
 std::optional<double> ServerSocket::controller_heard_s() const {

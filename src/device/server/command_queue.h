@@ -40,12 +40,12 @@ class CommandQueue {
   // Real-time thread. Call apply_stops() in every period, also while the device is lent.
   /// Applies the stops received so far. Returns true if there was one since the last call.
   bool apply_stops(ServoSwitches& switches) const noexcept {
-    return switches.obey_stops(stops_.load(std::memory_order_acquire));
+    return switches.apply_stops(stops_.load(std::memory_order_acquire));
   }
   /// Applies the next commands, at most kMostAPeriod.
   void apply_commands(ServoSwitches& switches) noexcept {
     OrderedCommand command;
-    for (int i = 0; i < kMostAPeriod && queue_.pop(command); ++i) switches.obey(command);
+    for (int i = 0; i < kMostAPeriod && queue_.pop(command); ++i) switches.apply(command);
   }
   /// Call it after the switches were published. Release: see have_stops_taken_effect().
   void confirm(const ServoSwitches& switches) noexcept { applied_.store(switches.stops, std::memory_order_release); }

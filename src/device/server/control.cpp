@@ -18,15 +18,15 @@ constexpr std::chrono::milliseconds kPausePatience{2000};  // the forces fade fi
 /// While it exists, the real-time thread has faded the forces and does not access the device.
 class DevicePause {
  public:
-  explicit DevicePause(Shared& shared) : shared_(shared), ticket_(shared.loan.ask()) {
+  explicit DevicePause(Shared& shared) : shared_(shared), ticket_(shared.lease.ask()) {
     const auto end = std::chrono::steady_clock::now() + kPausePatience;
     while (!is_granted() && std::chrono::steady_clock::now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  ~DevicePause() { shared_.loan.give_back(ticket_); }
+  ~DevicePause() { shared_.lease.give_back(ticket_); }
   DevicePause(const DevicePause&) = delete;
   DevicePause& operator=(const DevicePause&) = delete;
-  bool is_granted() const { return shared_.loan.is_lent(ticket_); }
+  bool is_granted() const { return shared_.lease.is_leased(ticket_); }
 
  private:
   Shared& shared_;
@@ -62,7 +62,7 @@ Control::Control(Shared& shared, devices::HapticDevice& device, SceneBuilder bui
 void Control::run() {
   const CrashStack stack;
   ControlJob job;
-  while (shared_.door.wait(job)) {
+  while (shared_.control_queue.wait(job)) {
     std::optional<LimitedLog> limited;
     if (job.session != 0) limited.emplace(*shared_.log_limit);  // also for the lines of the job
     const Result<std::string> done = perform(job);
@@ -72,7 +72,7 @@ void Control::run() {
       log_warning("{}", done.error().text());
     }
     limited.reset();
-    if (job.session != 0) shared_.door.answer({job.session, make_reply(job, done)});
+    if (job.session != 0) shared_.control_queue.answer({job.session, make_reply(job, done)});
     shared_.scene.collect();
   }
 }
@@ -96,7 +96,7 @@ void Control::publish(const ServoScene& scene) {
   scene_ = std::make_shared<const ServoScene>(scene);
   shared_.scene.publish(scene_);
   const link::LoadScene& request = builder_.request();
-  shared_.door.update([&](ControlStatus& status) {
+  shared_.control_queue.update([&](ControlStatus& status) {
     status.has_scene = true;
     status.patient = request.patient;
     status.patient_hash = builder_.patient()->content_hash;
@@ -109,11 +109,14 @@ Result<std::string> Control::perform(const link::LoadScene& request) {
   if (request.tool != tool_)
     return fail(fmt::format("this server controls the {}, not the {}", tool_, request.tool), "tool",
                 "send the scene to the other server");
-  const auto tell = [this](double done) { shared_.door.update([&](ControlStatus& status) { status.loading = done; }); };
+  const auto tell = [this](double done) {
+    shared_.control_queue.update([&](ControlStatus& status) { status.loading = done; });
+  };
   constexpr double kBegun = 0.01;
   tell(kBegun);
   const Result<ServoScene> scene = builder_.load(
-      request, [&](std::string_view, double fraction) { tell(std::max(kBegun, fraction)); }, shared_.door.stop_token());
+      request, [&](std::string_view, double fraction) { tell(std::max(kBegun, fraction)); },
+      shared_.control_queue.stop_token());
   tell(0.0);
   if (!scene) return tl::unexpected(scene.error());
   publish(*scene);
@@ -143,7 +146,7 @@ void Control::check_flights() {
   if (checked) return;
   const std::string text = fmt::format("flight records cannot be written: {}", checked.error().text());
   log_warning("{}", text);
-  shared_.door.update([&](ControlStatus& status) { status.warning = text; });
+  shared_.control_queue.update([&](ControlStatus& status) { status.warning = text; });
 }
 
 Result<std::string> Control::write(const Flight& flight) {
@@ -153,7 +156,7 @@ Result<std::string> Control::write(const Flight& flight) {
   const std::string text =
       path ? fmt::format("fault: the last {} periods were saved to {}", flight.size(), path->string())
            : fmt::format("the flight record could not be written: {}", path.error().text());
-  shared_.door.update([&](ControlStatus& status) { status.warning = text; });
+  shared_.control_queue.update([&](ControlStatus& status) { status.warning = text; });
   if (!path) return tl::unexpected(path.error());
   return text;
 }

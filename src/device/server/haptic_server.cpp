@@ -42,7 +42,7 @@ struct HapticServer::Impl {
        link::ServerSocket the_socket)
       : params(servo_params(the_device->preset(), options.rate_hz)),
         device(std::move(the_device)),
-        last_chance(std::in_place, *device),
+        crash_handler(std::in_place, *device),
         socket(std::move(the_socket)),
         url(socket.bound_url()),
         shared(static_cast<std::int64_t>(kNsPerS / options.rate_hz)),
@@ -51,7 +51,7 @@ struct HapticServer::Impl {
                 options.tool, options.flight_folder),
         link(shared, socket, make_welcome(*device, options.tool, params.workspace.force_scale),
              options.priority > 0 ? kLinkPriority : 0) {
-    shared.last_chance = &*last_chance;
+    shared.crash_handler = &*crash_handler;
     shared.log_limit = socket.log_limit();
   }
   ~Impl() {
@@ -94,13 +94,13 @@ struct HapticServer::Impl {
     shared.is_stopping = true;
     if (servo_thread.joinable()) servo_thread.join();
     if (link_thread.joinable()) link_thread.join();
-    shared.door.close();
+    shared.control_queue.close();
     const bool has_ended = wait_for_control();
-    for (const Flight& flight : shared.door.take_flights()) write_late(flight);
+    for (const Flight& flight : shared.control_queue.take_flights()) write_late(flight);
     // Loading a scene does not access the device; reopening it does.
-    const bool is_loading = !has_ended && shared.door.status().loading > 0.0;
+    const bool is_loading = !has_ended && shared.control_queue.status().loading > 0.0;
     if (is_loading) {
-      last_chance.reset();
+      crash_handler.reset();
       device.reset();
     }
     return {is_loading,       shared.statistics.newest().summary(), shared.grant, link.ticks(), shared.records_dropped,
@@ -109,7 +109,7 @@ struct HapticServer::Impl {
 
   ServoParams params;
   std::unique_ptr<devices::HapticDevice> device;
-  std::optional<LastChance> last_chance;
+  std::optional<CrashHandler> crash_handler;
   link::ServerSocket socket;
   std::string url;
   Shared shared;
@@ -140,7 +140,7 @@ Result<HapticServer> HapticServer::start(const ServerOptions& options, std::uniq
 }
 
 void HapticServer::load(const link::LoadScene& request) {
-  impl_->shared.door.post({0, 0, request});
+  impl_->shared.control_queue.post({0, 0, request});
 }
 
 std::string HapticServer::url() const {

@@ -40,7 +40,8 @@ void LinkThread::run() {
     watch_control();
     const std::optional<double> heard_s = socket_.controller_heard_s();
     shared_.heard_ns.store(heard_s ? static_cast<std::int64_t>(*heard_s * 1e9) : 0, std::memory_order_relaxed);
-    for (const AddressedReply& answer : shared_.door.take_replies()) socket_.send_reply(answer.session, answer.reply);
+    for (const AddressedReply& answer : shared_.control_queue.take_replies())
+      socket_.send_reply(answer.session, answer.reply);
 
     drain();
     if (now_s - sent_s_ < kBatch_s) continue;
@@ -93,10 +94,10 @@ void LinkThread::drain() {
 }
 
 void LinkThread::save(Flight flight) {
-  if (shared_.door.post(std::move(flight))) return;
+  if (shared_.control_queue.post(std::move(flight))) return;
   const std::string text = fmt::format("a flight record was dropped: {} others wait to be written", kMostFlights);
   log_warning("{}", text);
-  shared_.door.update([&](ControlStatus& status) { status.warning = text; });
+  shared_.control_queue.update([&](ControlStatus& status) { status.warning = text; });
 }
 
 void LinkThread::flush() {
@@ -140,28 +141,28 @@ void LinkThread::take(const link::Received& received, const link::Command& comma
   if (simple == nullptr || *simple == link::ServerCommand::kReconnect) {
     ControlJob job{received.session, command.request, link::ServerCommand::kReconnect};
     std::visit([&](const auto& what) { job.what = what; }, command.what);
-    if (!shared_.door.post(std::move(job)))
+    if (!shared_.control_queue.post(std::move(job)))
       reply(received, command.request, false, "busy: other jobs are queued — send it again when they are done");
     return;
   }
-  if (*simple == link::ServerCommand::kStart && !shared_.door.status().has_scene) {
+  if (*simple == link::ServerCommand::kStart && !shared_.control_queue.status().has_scene) {
     reply(received, command.request, false, "no scene loaded — load one first");
     return;
   }
   const bool is_taken = shared_.commands.push(*simple, realtime::now_ns());
   if (is_taken && *simple == link::ServerCommand::kResetFault)
-    shared_.door.update([](ControlStatus& status) { status.warning.clear(); });
+    shared_.control_queue.update([](ControlStatus& status) { status.warning.clear(); });
   reply(received, command.request, is_taken, is_taken ? "done" : "too many commands at once — send it again");
 }
 
 std::string LinkThread::warning() const {
   if (window_age_s_ > kStalled_s)
     return fmt::format("the client's window has not drawn a frame for {:.1f} s", window_age_s_);
-  return shared_.door.status().warning;
+  return shared_.control_queue.status().warning;
 }
 
 link::ServerStatus LinkThread::make_status(double now_s) {
-  const ControlStatus control = shared_.door.status();
+  const ControlStatus control = shared_.control_queue.status();
   link::ServerStatus status;
   status.server_time_s = now_s;
   status.gate_mode = newest_.sample.gate_mode;

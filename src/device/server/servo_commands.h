@@ -24,16 +24,16 @@ struct ServoSwitches {
   void begin_period() noexcept { is_reset = restarts_statistics = false; }
   /// Applies the stops, of which `received` have come so far: forces are off until a later kStart. Returns true if one
   /// was new. Real-time safe.
-  bool obey_stops(std::uint64_t received) noexcept {
+  bool apply_stops(std::uint64_t received) noexcept {
     if (received <= stops) return false;
     stops = received;
     is_wanted = false;
     return true;
   }
   /// Applies a command, after the stops before it. A kStart with a later stop has no effect. Real-time safe. kReconnect
-  /// is for the control thread and changes nothing here; kStop is counted, see obey_stops().
-  void obey(const OrderedCommand& ordered) noexcept {
-    obey_stops(ordered.stops);
+  /// is for the control thread and changes nothing here; kStop is counted, see apply_stops().
+  void apply(const OrderedCommand& ordered) noexcept {
+    apply_stops(ordered.stops);
     switch (ordered.command) {
       case link::ServerCommand::kStart:
         is_wanted = is_wanted || ordered.stops == stops;

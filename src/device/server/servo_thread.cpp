@@ -12,8 +12,8 @@ namespace {
 constexpr double kStatistics_s = 0.05;  // interval of copying the statistics
 
 /// Applies the stops; called in every period, also while the device is lent.
-void obey_stops(Shared& shared, ServoSwitches& switches, const realtime::Period& period,
-                StopStatistics& stops) noexcept {
+void apply_stops(Shared& shared, ServoSwitches& switches, const realtime::Period& period,
+                 StopStatistics& stops) noexcept {
   if (!shared.commands.apply_stops(switches)) return;
   const std::int64_t now_ns = realtime::now_ns();
   const auto since_last_ns = static_cast<std::int64_t>(std::llround(period.dt_s * 1e9));
@@ -21,7 +21,7 @@ void obey_stops(Shared& shared, ServoSwitches& switches, const realtime::Period&
 }
 
 /// Applies a bounded number of commands.
-void obey_commands(Shared& shared, ServoSwitches& switches, realtime::LoopStatistics& statistics) noexcept {
+void apply_commands(Shared& shared, ServoSwitches& switches, realtime::LoopStatistics& statistics) noexcept {
   switches.begin_period();
   shared.commands.apply_commands(switches);
   if (switches.restarts_statistics) statistics = realtime::LoopStatistics(shared.period_ns);
@@ -47,7 +47,7 @@ std::optional<link::HandTarget> take_hand(Shared& shared, std::uint64_t& placeme
 
 void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
   const CrashStack stack;
-  if (shared.last_chance != nullptr) shared.last_chance->adopt_thread();
+  if (shared.crash_handler != nullptr) shared.crash_handler->adopt_thread();
   shared.grant = realtime::request_real_time(priority);
   shared.has_grant.store(true, std::memory_order_release);
   realtime::LoopStatistics statistics(shared.period_ns);
@@ -55,27 +55,27 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
   StopStatistics stops;
   std::uint64_t placements = 0;
   double told_s = 0.0;
-  bool is_lent = false;
+  bool is_leased = false;
   std::int64_t busy_ns = 0;
   realtime::run_periodic(
       shared.period_ns, shared.is_stopping, statistics,
       [&](const realtime::Period& period, const realtime::LoopStatistics& so_far) {
-        const DeviceLoan::Request request = shared.loan.look();
-        if (shared.last_chance != nullptr && shared.last_chance->takes_over(is_lent && request.is_open)) return;
-        obey_stops(shared, switches, period, stops);
-        if (request.is_open && (is_lent || !servo.gives_force())) {
+        const DeviceLease::Request request = shared.lease.look();
+        if (shared.crash_handler != nullptr && shared.crash_handler->takes_over(is_leased && request.is_open)) return;
+        apply_stops(shared, switches, period, stops);
+        if (request.is_open && (is_leased || !servo.gives_force())) {
           publish(shared, switches);
-          is_lent = true;
-          shared.loan.lend(request);
+          is_leased = true;
+          shared.lease.grant(request);
           return;  // commands are waiting: a reset must not be lost
         }
-        if (std::exchange(is_lent, false)) {
+        if (std::exchange(is_leased, false)) {
           servo.resume();
           busy_ns = 0;
         }
 
         const std::int64_t begun_ns = realtime::now_ns();
-        obey_commands(shared, switches, statistics);
+        apply_commands(shared, switches, statistics);
         publish(shared, switches);
 
         ServoInput input;

@@ -55,7 +55,7 @@ void DetailPolicy::note_frame(const Detail& detail, double frame_ms, Time now) n
   }
   slow_frames_ = 0;
   comfortable_frames_ = frame_ms < params_.comfort * params_.target_ms ? comfortable_frames_ + 1 : 0;
-  if (comfortable_frames_ < params_.patience_frames || now < no_finer_before_) return;
+  if (comfortable_frames_ < params_.frames_before_finer || now < no_finer_before_) return;
   comfortable_frames_ = 0;
   if (level_ > 0) --level_;
 }

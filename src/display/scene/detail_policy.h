@@ -19,7 +19,7 @@ inline constexpr int kMeshLevels = 3;
 struct DetailPolicyParams {
   double target_ms = 32.0;                        ///< Frame time during motion. Range 5..500.
   double comfort = 0.55;                          ///< Below this share of the target, more detail is tried.
-  int patience_frames = 20;                       ///< Consecutive frames below that share before. Range 1..1000.
+  int frames_before_finer = 20;                   ///< Consecutive frames below that share before. Range 1..1000.
   std::chrono::milliseconds still_after{300};     ///< Full quality after this time without motion.
   std::chrono::milliseconds retry_after{10'000};  ///< A level that was too slow is retried after it.
 };

@@ -41,7 +41,7 @@ struct PatientScene::Impl {
     window->SetShowWindow(false);
     window->SetOffScreenRendering(1);
     window->SetSize(columns, rows);
-    detail::add_studio(*renderer);
+    detail::add_lights(*renderer);
     renderer->SetMaximumNumberOfPeels(detail::kDepthPeels);
     renderer->SetOcclusionRatio(0.01);
     window->SetMultiSamples(0);
@@ -161,7 +161,7 @@ void PatientScene::Impl::prepare(const Detail& detail, Eye eye) {
   planes.update(tools.needle_P(), detail == DetailPolicy::full() ? kPlanePixels : kPlanePixelsMoving);
   surfaces.set_level(detail.mesh_level);
   surfaces.set_visible(!draws_volume);
-  if (detail.mesh_level > 0) surfaces.draw_moving_last();
+  if (detail.mesh_level > 0) surfaces.draw_coarse_last();
   volume.set_visible(draws_volume);
   renderer->SetUseDepthPeeling(detail.is_peeled);
   renderer->SetUseFXAA(detail.is_smooth);

@@ -60,7 +60,7 @@ Result<volume::RgbImage> render_patient(const anatomy::VirtualPatient& patient,
   }
   vtkObject::GlobalWarningDisplayOff();
   vtkNew<vtkRenderer> renderer;
-  detail::add_studio(*renderer);
+  detail::add_lights(*renderer);
   std::vector<Vec3> points_P;
   for (const anatomy::NamedMesh& mesh : meshes) {
     auto look = detail::find_appearance(patient.label_table, mesh.name);

@@ -38,7 +38,7 @@ Result<DynamicLibrary> DynamicLibrary::open(const LibraryPlace& place) {
         continue;
       }
     }
-    TROCAR_TRY_STATUS(detail::try_library(candidate, place.patience));
+    TROCAR_TRY_STATUS(detail::try_library(candidate, place.timeout));
     void* const handle = dlopen(candidate.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     if (handle != nullptr) return DynamicLibrary(handle, std::move(candidate));
     reasons.push_back(last_dl_error());

@@ -15,7 +15,7 @@ struct LibraryPlace {
   std::span<const char* const> names;  ///< File names, tried in this order by the system's search rules: "libHD.so".
   std::string_view package;            ///< Name of the missing package: "the OpenHaptics toolkit".
   std::string_view advice;             ///< How to get the package.
-  std::chrono::milliseconds patience{10'000};  ///< Longest time of loading. [assumed: drivers load within a second]
+  std::chrono::milliseconds timeout{10'000};  ///< Longest time of loading. [assumed: drivers load within a second]
 };
 
 /// A shared library loaded at run time. It stays loaded until the process ends: vendors' drivers cannot be unloaded

@@ -27,7 +27,7 @@ static_assert(is_number(wire::MostItems::Settings, kMostSettings));
 static_assert(is_number(wire::MostItems::Samples, kMostSamples));
 static_assert(is_number(wire::MostClients::Controllers, kMostControllers));
 static_assert(is_number(wire::MostClients::Watchers, kMostWatchers));
-static_assert(is_number(wire::MostClients::ConnectionsBeforeHello, kMostStrangers));
+static_assert(is_number(wire::MostClients::ConnectionsBeforeHello, kMostUnauthenticated));
 static_assert(is_number(wire::RateLimit::MessagesAtOnce, static_cast<std::size_t>(kMostMessagesAtOnce)));
 static_assert(is_number(wire::RateLimit::MessagesPerS, static_cast<std::size_t>(kMostMessagesPerS)));
 static_assert(is_number(wire::RateLimit::BytesPerS, static_cast<std::size_t>(kMostBytesPerS)));

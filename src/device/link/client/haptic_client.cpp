@@ -13,17 +13,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-milliseconds left_of(milliseconds patience, Clock::time_point begin) {
+milliseconds left_of(milliseconds timeout, Clock::time_point begin) {
   const auto spent = std::chrono::duration_cast<milliseconds>(Clock::now() - begin);
-  return spent < patience ? patience - spent : milliseconds(0);
+  return spent < timeout ? timeout - spent : milliseconds(0);
 }
 
-tl::unexpected<Error> no_server(const std::string& endpoint, milliseconds patience, const std::string& refusal) {
+tl::unexpected<Error> no_server(const std::string& endpoint, milliseconds timeout, const std::string& refusal) {
   if (!refusal.empty()) {
-    return fail(fmt::format("no session within {} ms: {}", patience.count(), refusal), endpoint,
+    return fail(fmt::format("no session within {} ms: {}", timeout.count(), refusal), endpoint,
                 "look at the log of trocar-hapticd");
   }
-  return fail(fmt::format("no server responded within {} ms", patience.count()), endpoint,
+  return fail(fmt::format("no server responded within {} ms", timeout.count()), endpoint,
               "start trocar-hapticd there, or look at its log");
 }
 
@@ -73,14 +73,14 @@ std::vector<Reply> HapticClient::take_replies() {
   return impl_->thread->mailbox().take_replies();
 }
 
-Result<std::string> HapticClient::ask(decltype(Command::what) what, milliseconds patience) {
+Result<std::string> HapticClient::ask(decltype(Command::what) what, milliseconds timeout) {
   const Clock::time_point begin = Clock::now();
-  TROCAR_TRY_STATUS(wait_connected(patience));
+  TROCAR_TRY_STATUS(wait_connected(timeout));
   const std::uint32_t request = send(std::move(what));
-  const auto reply = impl_->thread->mailbox().wait_reply(request, left_of(patience, begin));
+  const auto reply = impl_->thread->mailbox().wait_reply(request, left_of(timeout, begin));
   const std::string& endpoint = impl_->thread->options().endpoint;
   if (!reply) {
-    return fail(fmt::format("the server did not reply within {} ms", patience.count()), endpoint, "look at its log");
+    return fail(fmt::format("the server did not reply within {} ms", timeout.count()), endpoint, "look at its log");
   }
   if (!reply->is_done) return fail(reply->text, endpoint, "see the log of the server");
   return reply->text;
@@ -95,9 +95,9 @@ void HapticClient::frame_drawn() {
   impl_->thread->frame_drawn();
 }
 
-Status HapticClient::wait_connected(milliseconds patience) {
-  if (impl_->thread->mailbox().wait_heard(patience)) return {};
-  return no_server(impl_->thread->options().endpoint, patience, view().refusal);
+Status HapticClient::wait_connected(milliseconds timeout) {
+  if (impl_->thread->mailbox().wait_heard(timeout)) return {};
+  return no_server(impl_->thread->options().endpoint, timeout, view().refusal);
 }
 
 }  // namespace trocar::link

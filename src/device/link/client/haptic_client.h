@@ -72,12 +72,12 @@ class HapticClient {
   std::uint32_t send(decltype(Command::what) what);
   std::vector<Reply> take_replies();
   /// Sends a command and waits for its reply. Errors: the reply's own, no server, no answer in time.
-  Result<std::string> ask(decltype(Command::what) what, std::chrono::milliseconds patience);
+  Result<std::string> ask(decltype(Command::what) what, std::chrono::milliseconds timeout);
   void set_hand(const HandTarget& target);
   /// Call after the window drew a frame.
   void frame_drawn();
   /// Waits for the first message of the server. Error: timeout.
-  Status wait_connected(std::chrono::milliseconds patience);
+  Status wait_connected(std::chrono::milliseconds timeout);
 
  private:
   struct Impl;

@@ -50,7 +50,7 @@ TEST(ConnectionLimits, SixteenAreAcceptedAtOnceAndAHundredASecond) {
   for (const detail::Descriptor& socket : sockets) EXPECT_FALSE(is_closed(socket));
   // A seventeenth a hundredth of a second later, in the place of the oldest.
   poll_all(server, kNow_s + 0.0101);
-  EXPECT_EQ(server.connections(), kMostStrangers);
+  EXPECT_EQ(server.connections(), kMostUnauthenticated);
   EXPECT_TRUE(is_closed(sockets[0]));
   EXPECT_FALSE(is_closed(sockets[1]));
 }

@@ -400,7 +400,7 @@ TEST(ServerSocket, KeepsFewConnectionsWhateverIsOpened) {
       many.back()->hello("many", i % 2 == 0);
     }
     for (int i = 0; i < 500; ++i) receive();
-    EXPECT_LE(server.connections(), kMostStrangers + kMostControllers + kMostWatchers);
+    EXPECT_LE(server.connections(), kMostUnauthenticated + kMostControllers + kMostWatchers);
     EXPECT_GT(server.connections(), 0u);
   }
   RawClient good(server.bound_url());

@@ -8,7 +8,7 @@
 namespace trocar::server {
 
 /// The control thread: builds scenes, reconnects the device and writes flight records. It runs one job at a time, until
-/// the ControlDoor is closed.
+/// the ControlQueue is closed.
 class Control {
  public:
   Control(Shared& shared, devices::HapticDevice& device, SceneBuilder builder, std::string tool,

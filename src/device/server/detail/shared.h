@@ -21,8 +21,8 @@
 #include "realtime/spsc_ring.h"
 #include "realtime/triple_buffer.h"
 #include "server/command_queue.h"
-#include "server/detail/device_loan.h"
-#include "server/last_chance.h"
+#include "server/crash_handler.h"
+#include "server/detail/device_lease.h"
 #include "server/servo.h"
 #include "server/stop_statistics.h"
 
@@ -60,7 +60,7 @@ inline constexpr std::size_t kMostFlights = 4;
 
 /// Queues between the link thread and the control thread. Both threads may block; neither is the real-time thread. The
 /// job queue is bounded.
-class ControlDoor {
+class ControlQueue {
  public:
   /// Queues a job. Returns false, and does not queue it, if kMostJobs or kMostJobBytes would be exceeded. A newer scene
   /// stops the loading of an older one.
@@ -168,7 +168,7 @@ struct Shared {
   explicit Shared(std::int64_t period) : period_ns(period), statistics(realtime::LoopStatistics(period)) {}
 
   const std::int64_t period_ns;
-  LastChance* last_chance = nullptr;  ///< Crash handler of the device; outlives the threads.
+  CrashHandler* crash_handler = nullptr;  ///< Crash handler of the device; outlives the threads.
   std::atomic<bool> is_stopping{false};
   std::atomic<bool> is_fading{false};  ///< True before the server stops: forces off.
 
@@ -188,10 +188,10 @@ struct Shared {
 
   // Between the control thread and the real-time thread.
   realtime::Handover<ServoScene> scene;
-  DeviceLoan loan;  ///< Loan of the device to the control thread.
+  DeviceLease lease;  ///< Lease of the device to the control thread.
 
   // Between the link thread and the control thread.
-  ControlDoor door;
+  ControlQueue control_queue;
   std::shared_ptr<LogLimit> log_limit = std::make_shared<LogLimit>();  ///< Of log lines that clients can cause.
 };
 

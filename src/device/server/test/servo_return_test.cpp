@@ -56,7 +56,7 @@ TEST_F(Return, OfADeviceThatWasLent) {
   rig.input.is_wanted = true;
   rig.input.now_s += 1.5;
   EXPECT_EQ(rig.step().sample.gate_fault, telemetry::GateFault::kNone)
-      << "a pose before the loan is no part of its way";
+      << "a pose before the lease is no part of its way";
   expect_soft_return();
 }
 

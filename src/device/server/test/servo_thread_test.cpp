@@ -119,19 +119,19 @@ TEST(ServoThread, AStopWhileTheQueueIsFullIsSeen) {
 TEST(ServoThread, AStopWhileTheDeviceIsLentIsSeenAtOnce) {
   ServoThreadRig rig;
   ASSERT_TRUE(rig.start_forces());
-  const std::uint64_t ticket = rig.shared.loan.ask();
+  const std::uint64_t ticket = rig.shared.lease.ask();
   ASSERT_TRUE(wait_for([&] {
     rig.hear();
-    return rig.shared.loan.is_lent(ticket);
+    return rig.shared.lease.is_leased(ticket);
   }));
-  EXPECT_TRUE(rig.shared.is_wanted) << "forces come back after the loan";
+  EXPECT_TRUE(rig.shared.is_wanted) << "forces come back after the lease";
   rig.shared.commands.push(ServerCommand::kStart, 0);
   rig.shared.commands.stop(realtime::now_ns());
   rig.shared.commands.push(ServerCommand::kResetFault, 0);
   ASSERT_TRUE(rig.wait_for_stops());
-  EXPECT_TRUE(rig.shared.loan.is_lent(ticket)) << "before the device is given back";
+  EXPECT_TRUE(rig.shared.lease.is_leased(ticket)) << "before the device is given back";
   EXPECT_FALSE(rig.shared.is_wanted);
-  rig.shared.loan.give_back(ticket);
+  rig.shared.lease.give_back(ticket);
   ASSERT_TRUE(rig.wait_for_writes(kPeriods));
   EXPECT_FALSE(rig.shared.is_wanted);
   EXPECT_EQ(rig.device.force_n, 0.0);

@@ -105,7 +105,7 @@ void add_light(vtkRenderer& renderer, const Vec3& from_camera, double intensity,
 
 }  // namespace
 
-void add_studio(vtkRenderer& renderer) {
+void add_lights(vtkRenderer& renderer) {
   renderer.SetBackground(0.055, 0.065, 0.085);
   renderer.SetBackground2(0.20, 0.235, 0.28);
   renderer.GradientBackgroundOn();

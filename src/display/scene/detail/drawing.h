@@ -40,7 +40,7 @@ void blend_at_once(vtkActor& actor);
 
 /// Adds a key light from the upper left, a weak fill light from the right, a cool rim light from behind, and a dark
 /// background gradient.
-void add_studio(vtkRenderer& renderer);
+void add_lights(vtkRenderer& renderer);
 inline constexpr int kDepthPeels = 6;  ///< Translucent layers of a pixel that are drawn, at most.
 void apply(const CameraView& view, vtkRenderer& renderer);
 

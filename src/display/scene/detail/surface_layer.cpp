@@ -39,7 +39,7 @@ vtkStandardNewMacro(BreakableActor)
 }  // namespace
 
 SurfaceLayer::SurfaceLayer(vtkRenderer& renderer, FrameBreak& frame_break)
-    : renderer_(renderer), frame_break_(frame_break), moving_(renderer) {}
+    : renderer_(renderer), frame_break_(frame_break), coarse_(renderer) {}
 
 SurfaceLayer::~SurfaceLayer() {
   if (loading_.valid()) loading_.wait();
@@ -78,7 +78,7 @@ void SurfaceLayer::clear() {
   for (Surface& surface : surfaces_) renderer_.RemoveActor(surface.actor);
   surfaces_.clear();
   structures_.clear();
-  moving_.set_parts({});
+  coarse_.set_parts({});
 }
 
 void SurfaceLayer::add(std::vector<StructureInfo> structures,
@@ -149,15 +149,15 @@ void SurfaceLayer::update(Surface& surface) {
 }
 
 void SurfaceLayer::update_moving() {
-  moving_.set_visible(is_visible_ && level_ > 0);
+  coarse_.set_visible(is_visible_ && level_ > 0);
   if (level_ == 0 || !is_moving_stale_) return;
-  std::vector<MovingPart> parts;
+  std::vector<CoarsePart> parts;
   for (const Surface& surface : surfaces_) {
     const double opacity = shown_opacity(surface);
     if (opacity <= kLeastOpacity) continue;
     parts.push_back({surface.levels[static_cast<std::size_t>(level_)], surface.look.color, opacity});
   }
-  moving_.set_parts(parts);
+  coarse_.set_parts(parts);
   is_moving_stale_ = false;
 }
 
@@ -190,8 +190,8 @@ bool SurfaceLayer::withhold_lesions(bool are_withheld) {
 void SurfaceLayer::set_level(int level) {
   if (level == level_) return;
   // The pieces for motion are reused after a rest if their level is unchanged.
-  if (level > 0 && level != moving_level_) is_moving_stale_ = true;
-  if (level > 0) moving_level_ = level;
+  if (level > 0 && level != coarse_level_) is_moving_stale_ = true;
+  if (level > 0) coarse_level_ = level;
   level_ = level;
   for (Surface& surface : surfaces_) update(surface);
   update_moving();
@@ -216,7 +216,7 @@ void SurfaceLayer::set_cut(const std::optional<std::pair<Vec3, Vec3>>& plane_P) 
     if (is_cut_) surface.mapper->AddClippingPlane(cut_);
     update(surface);
   }
-  moving_.set_cut(is_cut_ ? cut_.Get() : nullptr);
+  coarse_.set_cut(is_cut_ ? cut_.Get() : nullptr);
 }
 
 double SurfaceLayer::shown_opacity(const Surface& surface) const {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/detail/coarse_surfaces.h"
 #include "scene/detail/drawing.h"
-#include "scene/detail/moving_surfaces.h"
 #include "scene/detail_policy.h"
 
 namespace trocar::scene::detail {
@@ -50,7 +50,7 @@ class SurfaceLayer {
   bool set_opacity(std::string_view name, double opacity);
   /// True if it changed something. Also applies to later patients.
   bool withhold_lesions(bool are_withheld);
-  /// Level 0 has separate surfaces; coarser levels are for motion (MovingSurfaces).
+  /// Level 0 has separate surfaces; coarser levels are for motion (CoarseSurfaces).
   void set_level(int level);
   void set_visible(bool is_visible);
   /// Clips the half-space on the side of `normal_P` of the plane through p_P; empty: no clipping.
@@ -59,7 +59,7 @@ class SurfaceLayer {
   /// Vertices of the visible surfaces at a coarse level; of all surfaces if none is visible.
   std::vector<Vec3> outline_P() const;
   std::size_t triangle_count(int level) const;
-  void draw_moving_last() { moving_.draw_last(); }
+  void draw_coarse_last() { coarse_.draw_last(); }
 
  private:
   static constexpr double kLeastOpacity = 0.004;
@@ -96,9 +96,9 @@ class SurfaceLayer {
   std::future<std::vector<Surface>> loading_;
   std::vector<Order> all_;
   std::size_t begun_ = 0;  ///< Surfaces of all_ that are prepared or in preparation.
-  MovingSurfaces moving_;
+  CoarseSurfaces coarse_;
   bool is_moving_stale_ = true;
-  int moving_level_ = 0;  ///< Level of the meshes in moving_.
+  int coarse_level_ = 0;  ///< Level of the meshes in coarse_.
   vtkNew<vtkPlane> cut_;
   bool is_cut_ = false;
   bool is_visible_ = true;

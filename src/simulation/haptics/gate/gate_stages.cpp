@@ -6,7 +6,7 @@
 namespace trocar::haptics::detail {
 namespace {
 
-constexpr double kBeyondReason = 1e6;       // of any unit: a force, a speed, a position of no device [assumed]
+constexpr double kMostPlausible = 1e6;      // of any unit: a force, a speed, a position of no device [assumed]
 constexpr double kDampingLever_mm = 20.0;   // turns damping of a force into that of a torque, b l^2 [assumed, 10..40]
 constexpr double kLeastSpeed_mm_per_s = 1;  // below it damping takes nothing worth the noise [assumed, 0.1..5]
 constexpr double kMostExcess_mj = 100.0;    // remembered beyond the margin [assumed, 20..500]
@@ -65,7 +65,7 @@ double warmed(double heat, double norm, double continuous, double share) noexcep
 }  // namespace
 
 bool is_valid(double value) noexcept {
-  return std::abs(value) <= kBeyondReason;  // false for NaN
+  return std::abs(value) <= kMostPlausible;  // false for NaN
 }
 
 bool is_valid(const Wrench& wrench) noexcept {

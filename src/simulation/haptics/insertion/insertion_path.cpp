@@ -77,7 +77,7 @@ constexpr double kAtSurface_mm = 1e-6;
 
 /// Distance (mm) back along the axis from a tip inside the body to the skin; the longest needle's length if there is
 /// none.
-double way_to_skin_back(const PatientNow& now, const Vec3& tip_P, const Vec3& axis_P) noexcept {
+double distance_to_skin_back_mm(const PatientNow& now, const Vec3& tip_P, const Vec3& axis_P) noexcept {
   constexpr double kStep_mm = 1.0;
   constexpr double kLongest_mm = (Channel::kBins - 1) * Channel::kBin_mm;
   double inside = -skin_distance_mm(now, tip_P);
@@ -111,7 +111,7 @@ double in_front_of_bone(const Channel& channel, const HapticScene& scene, double
 bool resume_inside(InsertionPath& path, const PatientNow& now, const Vec3& tip_P, const Vec3& axis_P) noexcept {
   if (!(skin_distance_mm(now, tip_P) < 0.0)) return false;
   const HapticScene& scene = now.scene;
-  const double tip_mm = way_to_skin_back(now, tip_P, axis_P);
+  const double tip_mm = distance_to_skin_back_mm(now, tip_P, axis_P);
   start_channel(path, tip_P - tip_mm * axis_P, axis_P);
   open_path(path, scene.tissues[scene.skin].layer, now.motion);
   while (path.channel.known_bins <= bin_of(tip_mm)) look_ahead(path.channel, now, tip_mm, 0.0);

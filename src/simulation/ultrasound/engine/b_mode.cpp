@@ -86,7 +86,7 @@ void BMode::Impl::walk(int group, int first, int last) noexcept {
                  frame.gain.data() + static_cast<std::size_t>(to) * samples);
       if (plane == central) {
         std::fill_n(s.texture.added.begin(), samples, 0.0F);
-        to_gain(s.walk.log_way.data(), s.texture.added.data(), plan.samples,
+        to_gain(s.walk.path_loss.data(), s.texture.added.data(), plan.samples,
                 frame.way_gain.data() + static_cast<std::size_t>(line) * samples);
       }
       audible = std::max(audible, s.walk.audible);

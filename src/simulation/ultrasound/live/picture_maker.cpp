@@ -33,7 +33,7 @@ void set_unscanned(const AcousticScene& scene, ScanPicture& picture) {
 
 struct PictureMaker::Impl {
   /// Objects that render one level of detail.
-  struct Stage {
+  struct LevelRenderer {
     std::unique_ptr<EchoEngine> engine;
     std::shared_ptr<const Panorama> panorama;  ///< Of `engine`; nullptr: ray cast.
     int next_line = 0;                         ///< First scanline of the next picture, if it renews a part.
@@ -48,7 +48,7 @@ struct PictureMaker::Impl {
   };
 
   /// Data of a stored frame besides its levels.
-  struct Companion {
+  struct CineMetadata {
     ScanDetail detail = ScanDetail::kFull;
     double coupled_share = 1.0;
     std::vector<float> pressed_mm;
@@ -61,27 +61,27 @@ struct PictureMaker::Impl {
 
   std::shared_ptr<const AcousticScene> scene;
   Transducer transducer;
-  std::array<std::optional<Stage>, kScanDetails> stages;
+  std::array<std::optional<LevelRenderer>, kScanDetails> renderers;
   std::array<std::optional<Scanner>, kScanDetails> scanners;
   std::optional<Scanner> kept_scanner;  ///< For displayed frames of the loop.
   std::optional<ScanDetail> last_detail;
   bool had_colour = false;  ///< Of the last image.
   std::optional<CineLoop> cine;
-  std::vector<Companion> companions;  ///< For the slots of the loop, by number of pushes.
+  std::vector<CineMetadata> cine_metadata;  ///< For the slots of the loop, by number of pushes.
   std::size_t pushes = 0;
   std::vector<std::uint8_t> full_levels;
   detail::ColourConversion kept_colours;
 
   std::unique_ptr<EchoEngine> make_engine(const std::shared_ptr<const Panorama>& panorama,
                                           const Acquisition& acquisition) const;
-  Stage& stage(const ScanRequest& request, ScanDetail detail);
+  LevelRenderer& renderer(const ScanRequest& request, ScanDetail detail);
   Scanner& scanner(std::optional<Scanner>& place, const ScanRequest& request);
-  void add_colour(const ScanRequest& request, Stage& stage, const BasebandFrame& echoes, std::uint64_t seed,
-                  ScanPicture& picture, Companion& companion);
-  void keep(const ScanRequest& request, const ScanPicture& picture, Companion companion);
-  const Companion& companion(int index) const noexcept {
-    return companions[(pushes - static_cast<std::size_t>(cine->size()) + static_cast<std::size_t>(index)) %
-                      companions.size()];
+  void add_colour(const ScanRequest& request, LevelRenderer& renderer, const BasebandFrame& echoes, std::uint64_t seed,
+                  ScanPicture& picture, CineMetadata& metadata);
+  void keep(const ScanRequest& request, const ScanPicture& picture, CineMetadata metadata);
+  const CineMetadata& metadata(int index) const noexcept {
+    return cine_metadata[(pushes - static_cast<std::size_t>(cine->size()) + static_cast<std::size_t>(index)) %
+                         cine_metadata.size()];
   }
 };
 
@@ -91,18 +91,18 @@ std::unique_ptr<EchoEngine> PictureMaker::Impl::make_engine(const std::shared_pt
   return std::make_unique<PanoramaEngine>(scene, panorama, transducer, acquisition);
 }
 
-PictureMaker::Impl::Stage& PictureMaker::Impl::stage(const ScanRequest& request, ScanDetail detail) {
-  std::optional<Stage>& place = stages[static_cast<std::size_t>(detail)];
+PictureMaker::Impl::LevelRenderer& PictureMaker::Impl::renderer(const ScanRequest& request, ScanDetail detail) {
+  std::optional<LevelRenderer>& place = renderers[static_cast<std::size_t>(detail)];
   const Acquisition wanted = with_detail(request.acquisition, detail);
   if (!place || place->panorama != request.panorama) {
-    place.emplace(Stage{make_engine(request.panorama, wanted), request.panorama, 0, std::nullopt, nullptr, {}});
+    place.emplace(LevelRenderer{make_engine(request.panorama, wanted), request.panorama, 0, std::nullopt, nullptr, {}});
   } else if (!(place->engine->acquisition() == wanted)) {
     place->engine->set_acquisition(wanted);
   }
   return *place;
 }
 
-double PictureMaker::Impl::Stage::panorama_share() const noexcept {
+double PictureMaker::Impl::LevelRenderer::panorama_share() const noexcept {
   return panorama ? static_cast<const PanoramaEngine&>(*engine).panorama_share() : 0.0;
 }
 
@@ -114,7 +114,7 @@ Scanner& PictureMaker::Impl::scanner(std::optional<Scanner>& place, const ScanRe
   return *place;
 }
 
-LineRange PictureMaker::Impl::Stage::next_lines(const ScanRequest& request, bool is_other_detail) {
+LineRange PictureMaker::Impl::LevelRenderer::next_lines(const ScanRequest& request, bool is_other_detail) {
   constexpr double kRest_mm = 0.02;
   const int lines = engine->geometry().lines;
   const bool is_whole = request.renewed_share >= 1.0 || is_other_detail || request.flow != nullptr || !last ||
@@ -130,33 +130,33 @@ LineRange PictureMaker::Impl::Stage::next_lines(const ScanRequest& request, bool
   return {first, std::min(next_line, lines)};
 }
 
-void PictureMaker::Impl::add_colour(const ScanRequest& request, Stage& stage, const BasebandFrame& echoes,
-                                    std::uint64_t seed, ScanPicture& picture, Companion& companion) {
-  if (std::exchange(stage.flow, request.flow) != request.flow) stage.doppler.emplace(request.flow);
-  stage.doppler->settings = request.doppler;
-  companion.has_doppler = true;
-  companion.doppler_scan = echoes.geometry;
-  companion.doppler_settings = request.doppler;
-  companion.doppler =
-      stage.doppler->render({request.X_PT, echoes.geometry, echoes.beam, request.time_s, seed, stage.engine.get()});
-  picture.colour = stage.doppler->overlay(picture.gray, picture.raster);
+void PictureMaker::Impl::add_colour(const ScanRequest& request, LevelRenderer& renderer, const BasebandFrame& echoes,
+                                    std::uint64_t seed, ScanPicture& picture, CineMetadata& metadata) {
+  if (std::exchange(renderer.flow, request.flow) != request.flow) renderer.doppler.emplace(request.flow);
+  renderer.doppler->settings = request.doppler;
+  metadata.has_doppler = true;
+  metadata.doppler_scan = echoes.geometry;
+  metadata.doppler_settings = request.doppler;
+  metadata.doppler = renderer.doppler->render(
+      {request.X_PT, echoes.geometry, echoes.beam, request.time_s, seed, renderer.engine.get()});
+  picture.colour = renderer.doppler->overlay(picture.gray, picture.raster);
   picture.doppler = request.doppler;
-  picture.doppler_scale_cm_per_s = companion.doppler.scale_cm_per_s;
+  picture.doppler_scale_cm_per_s = metadata.doppler.scale_cm_per_s;
 }
 
-void PictureMaker::Impl::keep(const ScanRequest& request, const ScanPicture& picture, Companion companion) {
+void PictureMaker::Impl::keep(const ScanRequest& request, const ScanPicture& picture, CineMetadata metadata) {
   const Acquisition& a = request.acquisition;
   const ScanGeometry full = make_scan_geometry(transducer, a.depth_mm, a.lines, a.samples);
   if (!cine || !detail::is_same_scan(cine->scan(), full)) {
     const std::size_t frame_bytes = static_cast<std::size_t>(full.lines) * static_cast<std::size_t>(full.samples);
     const auto capacity = static_cast<int>(std::clamp<std::size_t>(kCineBytes / frame_bytes, 1, kCineFrames));
     cine.emplace(full, capacity);
-    companions.assign(static_cast<std::size_t>(capacity), {});
+    cine_metadata.assign(static_cast<std::size_t>(capacity), {});
     pushes = 0;
   }
   resample_levels(picture.levels, picture.scan, full, full_levels);
   cine->push(full_levels, request.X_PT, request.time_s, request.display);
-  companions[pushes++ % companions.size()] = std::move(companion);
+  cine_metadata[pushes++ % cine_metadata.size()] = std::move(metadata);
 }
 
 PictureMaker::PictureMaker(std::shared_ptr<const AcousticScene> scene, Transducer transducer)
@@ -176,13 +176,13 @@ const Transducer& PictureMaker::transducer() const noexcept {
 ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std::uint64_t seed) {
   Impl& impl = *impl_;
   const ScanRequest request = within_ranges(asked, impl.transducer);
-  Impl::Stage& stage = impl.stage(request, detail);
+  Impl::LevelRenderer& renderer = impl.renderer(request, detail);
   Scanner& scanner = impl.scanner(impl.scanners[static_cast<std::size_t>(detail)], request);
   // Persistence combines frames of the same kind only: not those of another detail or without colour.
   const bool is_other_detail = impl.last_detail != detail;
   const bool has_colour = request.flow != nullptr;
   if (is_other_detail) scanner.reset();
-  if (stage.doppler && (is_other_detail || !impl.had_colour)) stage.doppler->reset();
+  if (renderer.doppler && (is_other_detail || !impl.had_colour)) renderer.doppler->reset();
   impl.last_detail = detail;
   impl.had_colour = has_colour;
 
@@ -196,7 +196,7 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
     needles.push_back(needle);
   }
   const BasebandFrame& echoes =
-      stage.engine->render({request.X_PT, needles, request.time_s, stage.next_lines(request, is_other_detail)});
+      renderer.engine->render({request.X_PT, needles, request.time_s, renderer.next_lines(request, is_other_detail)});
 
   ScanPicture picture;
   picture.gray = scanner.show(echoes, seed);
@@ -210,16 +210,16 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
   picture.display = request.display;
   picture.detail = detail;
   picture.coupled_share = trocar::ultrasound::coupled_share(echoes);
-  picture.panorama_share = stage.panorama_share();
+  picture.panorama_share = renderer.panorama_share();
   set_unscanned(*impl.scene, picture);
   for (int line = 0; line < echoes.geometry.lines; ++line)
-    picture.pressed_mm.push_back(stage.engine->sound_path(line).pressed_mm);
+    picture.pressed_mm.push_back(renderer.engine->sound_path(line).pressed_mm);
   picture.dent_reach_mm = find_dent_reach_mm(*impl.scene, echoes.geometry, request.X_PT);
 
-  Impl::Companion companion{detail, picture.coupled_share, picture.pressed_mm, picture.dent_reach_mm, false, {}, {},
-                            {}};
-  if (has_colour) impl.add_colour(request, stage, echoes, seed, picture, companion);
-  if (!impl.cine || !impl.cine->is_frozen()) impl.keep(request, picture, std::move(companion));
+  Impl::CineMetadata metadata{detail, picture.coupled_share, picture.pressed_mm, picture.dent_reach_mm, false, {}, {},
+                              {}};
+  if (has_colour) impl.add_colour(request, renderer, echoes, seed, picture, metadata);
+  if (!impl.cine || !impl.cine->is_frozen()) impl.keep(request, picture, std::move(metadata));
   return picture;
 }
 
@@ -233,7 +233,7 @@ ScanPicture PictureMaker::show_kept(const ScanRequest& asked) {
   ScanRequest request = within_ranges(asked, impl.transducer);
   const int position = impl.cine->position();
   const CineFrame frame = impl.cine->frame(position);
-  const Impl::Companion& companion = impl.companion(position);
+  const Impl::CineMetadata& metadata = impl.metadata(position);
   Scanner& scanner = impl.scanner(impl.kept_scanner, request);
 
   ScanPicture picture;
@@ -248,21 +248,21 @@ ScanPicture PictureMaker::show_kept(const ScanRequest& asked) {
   picture.acquisition.depth_mm = picture.scan.depth_mm;
   picture.display = request.display;
   picture.display.tgc_db = frame.settings.tgc_db;
-  picture.detail = companion.detail;
-  picture.coupled_share = companion.coupled_share;
+  picture.detail = metadata.detail;
+  picture.coupled_share = metadata.coupled_share;
   set_unscanned(*impl.scene, picture);
-  picture.pressed_mm = companion.pressed_mm;
-  picture.dent_reach_mm = companion.dent_reach_mm;
+  picture.pressed_mm = metadata.pressed_mm;
+  picture.dent_reach_mm = metadata.dent_reach_mm;
   picture.is_frozen = true;
-  if (companion.has_doppler && request.flow) {
-    picture.doppler = companion.doppler_settings;
+  if (metadata.has_doppler && request.flow) {
+    picture.doppler = metadata.doppler_settings;
     // Settings that can still change for a stored colour frame.
     picture.doppler.baseline = request.doppler.baseline;
     picture.doppler.is_inverted = request.doppler.is_inverted;
     picture.doppler.write_priority = request.doppler.write_priority;
-    picture.doppler_scale_cm_per_s = companion.doppler.scale_cm_per_s;
+    picture.doppler_scale_cm_per_s = metadata.doppler.scale_cm_per_s;
     impl.kept_colours.forget();
-    picture.colour = impl.kept_colours.convert(picture.gray, picture.raster, companion.doppler_scan, companion.doppler,
+    picture.colour = impl.kept_colours.convert(picture.gray, picture.raster, metadata.doppler_scan, metadata.doppler,
                                                picture.doppler);
   }
   return picture;

@@ -23,8 +23,8 @@ constexpr int kReachLines = 9;
 
 /// Distance from p to the skin along a unit direction, at most `farthest_mm`: the signed distance never exceeds it, so
 /// steps of that length approach the skin without passing it.
-double way_to_skin_mm(const volume::FloatGrid& skin_distance_mm, const Vec3& p_P, const Vec3& direction_P, double sign,
-                      double farthest_mm) noexcept {
+double distance_to_skin_mm(const volume::FloatGrid& skin_distance_mm, const Vec3& p_P, const Vec3& direction_P,
+                           double sign, double farthest_mm) noexcept {
   double way_mm = 0.0;
   for (int step = 0; step < kMaxSteps && way_mm < farthest_mm; ++step) {
     const double left_mm = sign * sample_linear(skin_distance_mm, Vec3(p_P + way_mm * direction_P));
@@ -89,11 +89,11 @@ void find_contact(const volume::FloatGrid& skin_distance_mm, const ScanGeometry&
     if (!has_skin) continue;
     const Scanline line = scanline(geometry, X_PT, static_cast<double>(n) + first_line);
     if (sample_linear(skin_distance_mm, line.origin_P) < 0.0) {
-      line_contact.pressed_mm =
-          static_cast<float>(way_to_skin_mm(skin_distance_mm, line.origin_P, -line.direction_P, -1.0, kDeepestDent_mm));
+      line_contact.pressed_mm = static_cast<float>(
+          distance_to_skin_mm(skin_distance_mm, line.origin_P, -line.direction_P, -1.0, kDeepestDent_mm));
     } else {
-      line_contact.gap_mm =
-          static_cast<float>(way_to_skin_mm(skin_distance_mm, line.origin_P, line.direction_P, 1.0, kWidestGap_mm));
+      line_contact.gap_mm = static_cast<float>(
+          distance_to_skin_mm(skin_distance_mm, line.origin_P, line.direction_P, 1.0, kWidestGap_mm));
       line_contact.coupling = gap_coupling(line_contact.gap_mm);
     }
   }

@@ -31,7 +31,7 @@ bool is_valid(const DeviceHand& hand) noexcept {
 }
 
 bool is_valid(const Wrench& wrench) noexcept {
-  return wrench.force_n.norm() <= kAbsurdForce_n && wrench.torque_nmm.norm() <= kAbsurdTorque_nmm;
+  return wrench.force_n.norm() <= kMostPlausibleForce_n && wrench.torque_nmm.norm() <= kMostPlausibleTorque_nmm;
 }
 
 }  // namespace trocar::devices

@@ -22,10 +22,10 @@ HandNow hand_at(const DeviceHand& hand, double time_s) noexcept;
 /// True if all values are finite and no stiffness, damping, mass, inertia or point_mm is negative. Real-time safe.
 bool is_valid(const DeviceHand& hand) noexcept;
 
-/// True if a gate can have written the wrench: finite and within kAbsurdForce_n and kAbsurdTorque_nmm, which are more
-/// than a hundred times the peaks of any device in data/devices.toml. Real-time safe.
+/// True if a gate can have written the wrench: finite and within kMostPlausibleForce_n and kMostPlausibleTorque_nmm,
+/// which are more than a hundred times the peaks of any device in data/devices.toml. Real-time safe.
 bool is_valid(const Wrench& wrench) noexcept;
-inline constexpr double kAbsurdForce_n = 2e4;
-inline constexpr double kAbsurdTorque_nmm = 5e5;
+inline constexpr double kMostPlausibleForce_n = 2e4;
+inline constexpr double kMostPlausibleTorque_nmm = 5e5;
 
 }  // namespace trocar::devices

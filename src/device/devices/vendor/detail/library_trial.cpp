@@ -49,8 +49,8 @@ bool is_loaded(const std::string& library) {
 }
 
 /// The status of the child's end; empty: it has not ended in time, and was killed.
-std::optional<int> end_of(pid_t child, std::chrono::milliseconds patience) {
-  const auto end = std::chrono::steady_clock::now() + patience;
+std::optional<int> end_of(pid_t child, std::chrono::milliseconds timeout) {
+  const auto end = std::chrono::steady_clock::now() + timeout;
   int status = 0;
   while (::waitpid(child, &status, WNOHANG) == 0) {
     if (std::chrono::steady_clock::now() >= end) {
@@ -66,17 +66,17 @@ std::optional<int> end_of(pid_t child, std::chrono::milliseconds patience) {
 
 }  // namespace
 
-Status try_library(const std::string& library, std::chrono::milliseconds patience) {
+Status try_library(const std::string& library, std::chrono::milliseconds timeout) {
   if (is_loaded(library)) return {};
   const pid_t child = ::fork();
   if (child == 0) load_and_end(library.c_str());
   if (child < 0)
     return fail(fmt::format("no process to try the library: {}", std::strerror(errno)), library,
                 "end other programs, or raise the limit on processes (ulimit -u)");
-  const std::optional<int> status = end_of(child, patience);
+  const std::optional<int> status = end_of(child, timeout);
   if (!status)
     return fail(
-        fmt::format("loading the library takes longer than {} s", std::chrono::duration<double>(patience).count()),
+        fmt::format("loading the library takes longer than {} s", std::chrono::duration<double>(timeout).count()),
         library, kReinstall);
   const bool has_answer = WIFEXITED(*status) && (WEXITSTATUS(*status) == 0 || WEXITSTATUS(*status) == kNoLibrary);
   if (has_answer) return {};  // the loader's own message follows

@@ -17,10 +17,10 @@ namespace fs = std::filesystem;
 constexpr const char* kVariable = "TROCAR_LIBTEST";
 
 /// The error of a library that the variable names; empty: it was loaded.
-std::string load_error(const fs::path& library, std::chrono::milliseconds patience = std::chrono::minutes(1)) {
+std::string load_error(const fs::path& library, std::chrono::milliseconds timeout = std::chrono::minutes(1)) {
   ::setenv(kVariable, library.c_str(), 1);
   const LibraryPlace place{
-      .variable = kVariable, .names = {}, .package = "the test", .advice = "build it", .patience = patience};
+      .variable = kVariable, .names = {}, .package = "the test", .advice = "build it", .timeout = timeout};
   const auto loaded = DynamicLibrary::open(place);
   ::unsetenv(kVariable);
   return loaded ? std::string() : loaded.error().text();

@@ -75,19 +75,19 @@ std::vector<Reply> ClientMailbox::take_replies() {
   return {std::make_move_iterator(replies.begin()), std::make_move_iterator(replies.end())};
 }
 
-std::optional<Reply> ClientMailbox::wait_reply(std::uint32_t request, std::chrono::milliseconds patience) {
+std::optional<Reply> ClientMailbox::wait_reply(std::uint32_t request, std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   const auto find = [&] { return std::ranges::find(replies_, request, &Reply::request); };
-  if (!news_.wait_for(lock, patience, [&] { return find() != replies_.end(); })) return {};
+  if (!news_.wait_for(lock, timeout, [&] { return find() != replies_.end(); })) return {};
   const auto found = find();
   Reply reply = std::move(*found);
   replies_.erase(found);
   return reply;
 }
 
-bool ClientMailbox::wait_heard(std::chrono::milliseconds patience) {
+bool ClientMailbox::wait_heard(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  return news_.wait_for(lock, patience, [&] { return is_connected(); });
+  return news_.wait_for(lock, timeout, [&] { return is_connected(); });
 }
 
 Outgoing ClientMailbox::take_outgoing() {

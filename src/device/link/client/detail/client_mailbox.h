@@ -34,8 +34,8 @@ class ClientMailbox {
   std::optional<telemetry::TickSample> newest() const;
   std::vector<Reply> take_replies();
   /// Wait for a reply with this number, or for a connected server. They return empty or false after a timeout.
-  std::optional<Reply> wait_reply(std::uint32_t request, std::chrono::milliseconds patience);
-  bool wait_heard(std::chrono::milliseconds patience);
+  std::optional<Reply> wait_reply(std::uint32_t request, std::chrono::milliseconds timeout);
+  bool wait_heard(std::chrono::milliseconds timeout);
 
   // The thread's side.
   Outgoing take_outgoing();

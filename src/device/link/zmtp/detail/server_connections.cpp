@@ -28,7 +28,7 @@ constexpr double kPauseAccepts = 50.0;  ///< Skipped accepts without a free desc
 
 /// Raises the soft limit if it is too low for all connections and the reserve.
 Status ensure_descriptors() {
-  constexpr rlim_t kWanted = kReservedDescriptors + kMostStrangers + kMostControllers + kMostWatchers;
+  constexpr rlim_t kWanted = kReservedDescriptors + kMostUnauthenticated + kMostControllers + kMostWatchers;
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kWanted) return {};
   limit.rlim_cur = kWanted;
@@ -198,9 +198,9 @@ bool ServerConnections::may_connect(int socket) const {
 }
 
 void ServerConnections::make_place() {
-  const auto is_stranger = [](const Connection& c) { return !c.is_closed && !c.stream->is_greeted(); };
-  if (static_cast<std::size_t>(std::ranges::count_if(connections_, is_stranger)) < kMostStrangers) return;
-  const auto oldest = std::ranges::find_if(connections_, is_stranger);  // they are in the order of their accept
+  const auto is_unauthenticated = [](const Connection& c) { return !c.is_closed && !c.stream->is_greeted(); };
+  if (static_cast<std::size_t>(std::ranges::count_if(connections_, is_unauthenticated)) < kMostUnauthenticated) return;
+  const auto oldest = std::ranges::find_if(connections_, is_unauthenticated);  // they are in the order of their accept
   oldest->is_closed = true;
   oldest->socket.close();
 }
@@ -230,7 +230,7 @@ void ServerConnections::refresh(double now_s) {
   }
 }
 
-void ServerConnections::drop_strangers(double now_s) {
+void ServerConnections::drop_unauthenticated(double now_s) {
   refresh(now_s);
   for (Connection& connection : connections_) {
     const bool is_late = now_s - connection.since_s > kHelloPatience_s;

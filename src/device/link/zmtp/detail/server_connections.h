@@ -22,8 +22,8 @@
 namespace trocar::link::detail {
 
 /// The listening socket of a server and its connections, used by one thread. Limits for untrusted peers: connections,
-/// accepts per second, bytes and messages of each connection (link/limits.h). At most kMostStrangers connections have
-/// not sent Hello: a new one replaces the oldest of them.
+/// accepts per second, bytes and messages of each connection (link/limits.h). At most kMostUnauthenticated connections
+/// have not sent Hello: a new one replaces the oldest of them.
 class ServerConnections {
  public:
   /// Errors: address in use, no such folder, too few file descriptors.
@@ -53,7 +53,7 @@ class ServerConnections {
   /// Call it after clients were added or removed.
   void refresh(double now_s);
   /// Closes connections that have not sent Hello within kHelloPatience_s.
-  void drop_strangers(double now_s);
+  void drop_unauthenticated(double now_s);
 
   const std::string& url() const { return url_; }
   std::size_t count() const { return connections_.size(); }

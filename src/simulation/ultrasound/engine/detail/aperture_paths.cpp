@@ -231,14 +231,14 @@ void apply_paths(const ScanPlan& plan, const FrameState& frame, int line, WalkRe
   };
   const float mirror = mirror_sample(plan, frame, line);
   bool is_straight = true;
-  float held = 0.0F, before = changed(0, walk.log_way[0]);
+  float held = 0.0F, before = changed(0, walk.path_loss[0]);
   int border = 0;
   for (int s = 0; s < plan.samples; s += kCoarse) {
     const auto c = static_cast<std::size_t>(s / kCoarse);
     // Behind a mirror the sound has the way to it.
     if (is_straight && static_cast<float>(s + kCoarse) >= mirror) {
       is_straight = false;
-      held = opened(c, walk.log_way[static_cast<std::size_t>(s)]) + before;
+      held = opened(c, walk.path_loss[static_cast<std::size_t>(s)]) + before;
     }
     for (; border < walk.border_count; ++border) {
       Border& next = walk.borders[static_cast<std::size_t>(border)];
@@ -246,11 +246,11 @@ void apply_paths(const ScanPlan& plan, const FrameState& frame, int line, WalkRe
       next.log_gain += is_straight ? opened(c, next.log_gain) + changed(c, next.log_gain) : held;
     }
     using Part = Eigen::Array<float, kCoarse, 1>;  // the last one may end behind the samples
-    Eigen::Map<Part> way(walk.log_way.data() + s), gain(walk.log_gain.data() + s);
+    Eigen::Map<Part> way(walk.path_loss.data() + s), gain(walk.log_gain.data() + s);
     Part added = Part::Constant(held);
     if (is_straight) {
       const float after =
-          changed(c + 1, walk.log_way[static_cast<std::size_t>(std::min(s + kCoarse, plan.samples - 1))]);
+          changed(c + 1, walk.path_loss[static_cast<std::size_t>(std::min(s + kCoarse, plan.samples - 1))]);
       added = Ends{open[c] - own[c], open[c + 1] - own[c + 1]}.between().min(
                   (Ends{open[c], open[c + 1]}.between() - way).max(0.0F)) +
               Ends{before, after}.between();

@@ -136,7 +136,7 @@ void probe_line(const ScanPlan& plan, FrameState& frame, WalkResult& scratch, in
   for (std::size_t c = 0; c < coarse; ++c) {
     const std::size_t s = std::min(c * kCoarse, static_cast<std::size_t>(plan.samples - 1));
     constexpr float kBendable = 0.15F;  // nothing behind gas and bone is visible
-    way[c] = scratch.log_way[s];
+    way[c] = scratch.path_loss[s];
     // Not the gel at the face and the losses at borders.
     const std::uint8_t tissue = scratch.tissue[s];
     const float loss = c == 0 ? 0.0F : std::clamp(way[c - 1] - way[c], 0.0F, kCoarse * plan.rows[tissue].loss);

@@ -102,7 +102,7 @@ void note_layers(const ScanPlan& plan, FrameState& frame, const WalkResult& walk
   Layering* const noted = frame.layers.data() + static_cast<std::size_t>(line) * plan.layer_steps();
   for (std::size_t step = 0; step < plan.layer_steps(); ++step) {
     const std::size_t at = layer_sample(plan, step);
-    const bool is_heard = walk.log_way[at] > kInaudible;
+    const bool is_heard = walk.path_loss[at] > kInaudible;
     noted[step] = is_heard && is_layered(plan, walk, at) ? layers_at(frame, walk, at) : Layering{};
   }
 }

@@ -183,7 +183,7 @@ class Walk {
     std::fill_n(result_.log_gain.begin() + s, left, kSilence);
     std::fill_n(result_.tissue.begin() + s, left, kNoData);
     std::fill_n(result_.share.begin() + s, left, plan_.share[kNoData]);
-    std::fill_n(result_.log_way.begin() + s, left, kSilence);
+    std::fill_n(result_.path_loss.begin() + s, left, kSilence);
     if (delay_ != nullptr) std::fill_n(delay_ + s, left, late_);
     result_.audible = s;
   }
@@ -251,7 +251,7 @@ class Walk {
     const auto at = static_cast<std::size_t>(s);
     const auto fill = HWY_DYNAMIC_DISPATCH(fill_evenly);
     fill(log_gain_ + row.log_b, -row.loss, n, result_.log_gain.data() + at);
-    fill(log_gain_, -row.loss, n, result_.log_way.data() + at);
+    fill(log_gain_, -row.loss, n, result_.path_loss.data() + at);
     std::fill_n(result_.tissue.begin() + s, n, tissue_);
     std::fill_n(result_.share.begin() + s, n, plan_.share[tissue_]);
     log_gain_ -= row.loss * static_cast<float>(n);
@@ -268,7 +268,7 @@ class Walk {
     result_.share[at] = plan_.share[tissue];
     result_.log_gain[at] = row.log_b + way;
     log_gain_ -= row.loss;
-    result_.log_way[at] = way;
+    result_.path_loss[at] = way;
     if (delay_ == nullptr) return;
     delay_[s] = late_ + 0.5F * row.delay;
     late_ += row.delay;

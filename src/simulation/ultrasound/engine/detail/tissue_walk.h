@@ -20,7 +20,7 @@ struct alignas(64) WalkResult {
   /// Offset of the first voxel of its cell among the tiles; -1 outside the volume.
   std::array<std::int32_t, kMaxSamples + 16> cell;
   std::array<float, kMaxSamples + 16> log_gain;       ///< Gain of a scatterer there: loss and backscatter, neper.
-  std::array<float, kMaxSamples + 16> log_way;        ///< Loss alone, neper.
+  std::array<float, kMaxSamples + 16> path_loss;      ///< Loss alone, neper.
   std::array<float, kMaxSamples + 16> sideways_mm;    ///< Displacement by refraction.
   std::array<std::uint8_t, kMaxSamples + 16> share;   ///< Class of the share of scatterers.
   std::array<std::uint8_t, kMaxSamples + 16> tissue;  ///< The nearest or prevailing tissue.

@@ -78,7 +78,7 @@ class ScriptedServer final : public attempt::ServerHost {
   void step();
   link::ServerStatus status() const;
   link::Reply answer(const link::Command& command);
-  void obey(link::ServerCommand command);
+  void apply(link::ServerCommand command);
 
   FakeClock& clock_;
   std::string device_, tool_, endpoint_ = "ipc:///scripted";
@@ -182,7 +182,7 @@ inline link::ServerStatus ScriptedServer::status() const {
 inline link::Reply ScriptedServer::answer(const link::Command& command) {
   link::Reply reply{command.request, true, "done"};
   if (const auto* simple = std::get_if<link::ServerCommand>(&command.what)) {
-    obey(*simple);
+    apply(*simple);
     const bool is_refused = *simple == link::ServerCommand::kReconnect && is_device_gone;
     if (is_refused) reply = {command.request, false, "no device is connected"};
     return reply;
@@ -196,7 +196,7 @@ inline link::Reply ScriptedServer::answer(const link::Command& command) {
   return reply;
 }
 
-inline void ScriptedServer::obey(link::ServerCommand command) {
+inline void ScriptedServer::apply(link::ServerCommand command) {
   commands.push_back(command);
   const bool has_fault = fault_ != telemetry::GateFault::kNone;
   if (command == link::ServerCommand::kStart && !has_fault) gate_ = telemetry::GateMode::kOn;

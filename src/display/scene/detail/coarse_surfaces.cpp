@@ -1,4 +1,4 @@
-#include "scene/detail/moving_surfaces.h"
+#include "scene/detail/coarse_surfaces.h"
 
 #include <vtkAppendPolyData.h>
 #include <vtkNew.h>
@@ -26,7 +26,7 @@ constexpr const char* kSimpleLight =
     "    gl_FragData[0].a = min(0.95, opacity * (0.7 + 3.0 * edge * edge));\n"
     "  }\n";
 
-vtkSmartPointer<vtkPolyData> colored(const MovingPart& part) {
+vtkSmartPointer<vtkPolyData> colored(const CoarsePart& part) {
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->ShallowCopy(part.data);
   vtkNew<vtkUnsignedCharArray> colors;
@@ -42,7 +42,7 @@ vtkSmartPointer<vtkPolyData> colored(const MovingPart& part) {
 
 }  // namespace
 
-void MovingSurfaces::add(vtkPolyData* data, const volume::Rgb& color, double opacity, bool has_colors) {
+void CoarseSurfaces::add(vtkPolyData* data, const volume::Rgb& color, double opacity, bool has_colors) {
   auto mapper = make_mapper(data);
   if (has_colors) {
     mapper->ScalarVisibilityOn();
@@ -60,12 +60,12 @@ void MovingSurfaces::add(vtkPolyData* data, const volume::Rgb& color, double opa
   actors_.push_back(actor);
 }
 
-void MovingSurfaces::set_parts(const std::vector<MovingPart>& parts) {
+void CoarseSurfaces::set_parts(const std::vector<CoarsePart>& parts) {
   for (const auto& actor : actors_) renderer_.RemoveActor(actor);
   actors_.clear();
   vtkNew<vtkAppendPolyData> together;
-  std::vector<const MovingPart*> translucent;
-  for (const MovingPart& part : parts) {
+  std::vector<const CoarsePart*> translucent;
+  for (const CoarsePart& part : parts) {
     if (part.opacity < 1.0) {
       translucent.push_back(&part);
     } else {
@@ -78,16 +78,16 @@ void MovingSurfaces::set_parts(const std::vector<MovingPart>& parts) {
   }
   // Larger parts enclose smaller ones.
   std::sort(translucent.begin(), translucent.end(),
-            [](const MovingPart* a, const MovingPart* b) { return a->data->GetLength() < b->data->GetLength(); });
-  for (const MovingPart* part : translucent) add(part->data, part->color, part->opacity, false);
+            [](const CoarsePart* a, const CoarsePart* b) { return a->data->GetLength() < b->data->GetLength(); });
+  for (const CoarsePart* part : translucent) add(part->data, part->color, part->opacity, false);
 }
 
-void MovingSurfaces::set_visible(bool is_visible) {
+void CoarseSurfaces::set_visible(bool is_visible) {
   is_visible_ = is_visible;
   for (const auto& actor : actors_) actor->SetVisibility(is_visible);
 }
 
-void MovingSurfaces::set_cut(vtkPlane* cut) {
+void CoarseSurfaces::set_cut(vtkPlane* cut) {
   cut_ = cut;
   for (const auto& actor : actors_) {
     actor->GetMapper()->RemoveAllClippingPlanes();
@@ -96,7 +96,7 @@ void MovingSurfaces::set_cut(vtkPlane* cut) {
   }
 }
 
-void MovingSurfaces::draw_last() {
+void CoarseSurfaces::draw_last() {
   if (actors_.empty() || renderer_.GetViewProps()->GetLastProp() == actors_.back().Get()) return;
   for (const auto& actor : actors_) {
     if (actor->GetProperty()->GetOpacity() >= 1.0) continue;

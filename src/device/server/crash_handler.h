@@ -12,27 +12,27 @@ namespace trocar::server {
 
 /// Commands zero force when the program crashes: SIGABRT (std::terminate, failed checks, libraries), SIGSEGV, SIGBUS,
 /// SIGFPE, SIGILL, SIGSYS, SIGXCPU. The signal handler requests that the real-time thread writes zero once and then
-/// nothing more. If that thread does not respond within kPatience_ms, or has crashed itself, the handler writes zero.
+/// nothing more. If that thread does not respond within kTimeout_ms, or has crashed itself, the handler writes zero.
 /// Then the signal ends the process with its default action. The constructor registers the device and installs the
 /// handlers; the destructor unregisters the device.
-class LastChance {
+class CrashHandler {
  public:
-  static constexpr int kPatience_ms = 20;
+  static constexpr int kTimeout_ms = 20;
 
-  explicit LastChance(devices::HapticDevice& device) noexcept;
-  ~LastChance();
-  LastChance(const LastChance&) = delete;
-  LastChance& operator=(const LastChance&) = delete;
+  explicit CrashHandler(devices::HapticDevice& device) noexcept;
+  ~CrashHandler();
+  CrashHandler(const CrashHandler&) = delete;
+  CrashHandler& operator=(const CrashHandler&) = delete;
 
   /// Registers the calling thread as the thread that writes to the device.
   void adopt_thread() noexcept;
   /// That thread calls it at the start of every period. Returns true if the process is ending: the thread must not
-  /// write any more; zero has been written unless the device is lent (`is_lent`). Real-time safe.
-  bool takes_over(bool is_lent) noexcept;
+  /// write any more; zero has been written unless the device is lent (`is_leased`). Real-time safe.
+  bool takes_over(bool is_leased) noexcept;
 
   /// Commands zero force; called by the signal handler. Async-signal-safe as far as the device's write() is real-time
   /// safe.
-  void let_go() noexcept;
+  void command_zero_force() noexcept;
 
  private:
   devices::HapticDevice& device_;

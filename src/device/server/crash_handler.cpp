@@ -1,4 +1,4 @@
-#include "server/last_chance.h"
+#include "server/crash_handler.h"
 
 #include <signal.h>
 #include <time.h>
@@ -17,7 +17,7 @@ constexpr int kSent_ms = 10;
 constexpr unsigned kProcessEnds_s = 1;
 
 // A signal handler can access data only through a global.
-std::array<std::atomic<LastChance*>, kMostDevices> devices{};
+std::array<std::atomic<CrashHandler*>, kMostDevices> devices{};
 std::atomic<pid_t> crashed_thread{0};
 
 void sleep_ms(int ms) noexcept {
@@ -36,9 +36,9 @@ extern "C" void handle_crash(int number) {
     ::alarm(kProcessEnds_s);
     bool has_device = false;
     for (auto& device : devices) {
-      LastChance* const chance = device.load(std::memory_order_acquire);
-      if (chance == nullptr) continue;
-      chance->let_go();
+      CrashHandler* const handler = device.load(std::memory_order_acquire);
+      if (handler == nullptr) continue;
+      handler->command_zero_force();
       has_device = true;
     }
     constexpr char kText[] = "trocar: the program crashed; zero force was commanded\n";
@@ -61,38 +61,38 @@ void install() noexcept {
 
 }  // namespace
 
-LastChance::LastChance(devices::HapticDevice& device) noexcept : device_(device) {
+CrashHandler::CrashHandler(devices::HapticDevice& device) noexcept : device_(device) {
   install();
   for (auto& slot : devices) {
-    LastChance* none = nullptr;
+    CrashHandler* none = nullptr;
     if (slot.compare_exchange_strong(none, this)) return;
   }
 }
 
-LastChance::~LastChance() {
+CrashHandler::~CrashHandler() {
   for (auto& slot : devices) {
-    LastChance* self = this;
+    CrashHandler* self = this;
     if (slot.compare_exchange_strong(self, nullptr)) return;
   }
 }
 
-void LastChance::adopt_thread() noexcept {
+void CrashHandler::adopt_thread() noexcept {
   thread_.store(::gettid(), std::memory_order_release);
 }
 
-bool LastChance::takes_over(bool is_lent) noexcept {
+bool CrashHandler::takes_over(bool is_leased) noexcept {
   if (!is_wanted_.load(std::memory_order_acquire)) return false;
   if (!is_done_.load(std::memory_order_acquire)) {
-    if (!is_lent) device_.write(Wrench{});
+    if (!is_leased) device_.write(Wrench{});
     is_done_.store(true, std::memory_order_release);
   }
   return true;
 }
 
-void LastChance::let_go() noexcept {
+void CrashHandler::command_zero_force() noexcept {
   is_wanted_.store(true, std::memory_order_release);
   const bool is_writer = thread_.load(std::memory_order_acquire) == ::gettid();
-  for (int i = 0; i < kPatience_ms && !is_writer && !is_done_.load(std::memory_order_acquire); ++i) sleep_ms(1);
+  for (int i = 0; i < kTimeout_ms && !is_writer && !is_done_.load(std::memory_order_acquire); ++i) sleep_ms(1);
   if (!is_done_.load(std::memory_order_acquire)) device_.write(Wrench{});
   sleep_ms(kSent_ms);
 }

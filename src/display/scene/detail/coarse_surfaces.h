@@ -9,7 +9,7 @@
 namespace trocar::scene::detail {
 
 /// A surface that is drawn during motion.
-struct MovingPart {
+struct CoarsePart {
   vtkSmartPointer<vtkPolyData> data;  ///< With normals.
   volume::Rgb color;
   double opacity = 1.0;
@@ -17,11 +17,11 @@ struct MovingPart {
 
 /// Surfaces for rendering on the processor: all opaque surfaces are one mesh, and the translucent ones are blended over
 /// it from the smallest to the largest, in a single pass with a one-line lighting model.
-class MovingSurfaces {
+class CoarseSurfaces {
  public:
-  explicit MovingSurfaces(vtkRenderer& renderer) : renderer_(renderer) {}
+  explicit CoarseSurfaces(vtkRenderer& renderer) : renderer_(renderer) {}
 
-  void set_parts(const std::vector<MovingPart>& parts);
+  void set_parts(const std::vector<CoarsePart>& parts);
   void set_visible(bool is_visible);
   /// Clips the surfaces with the plane; nullptr: no clipping.
   void set_cut(vtkPlane* cut);

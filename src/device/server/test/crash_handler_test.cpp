@@ -1,5 +1,5 @@
 // Crashes in a child process; the last wrench of its device is read from shared memory.
-#include "server/last_chance.h"
+#include "server/crash_handler.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -57,12 +57,12 @@ int signal_of_child(const std::function<void()>& run) {
 }
 
 /// A loop that presses with 5 N until it is told to let go; `crash` is called in its thread after some periods.
-void press(LastChance& chance, SeenDevice& device, Seen& seen, const std::function<void()>& crash) {
-  chance.adopt_thread();
+void press(CrashHandler& handler, SeenDevice& device, Seen& seen, const std::function<void()>& crash) {
+  handler.adopt_thread();
   Wrench pressing;
   pressing.force_n = {0.0, 0.0, 5.0};
   for (int i = 0;; ++i) {
-    if (!chance.takes_over(false)) {
+    if (!handler.takes_over(false)) {
       device.write(pressing);
       ++seen.writes_by_servo;
     }
@@ -71,7 +71,7 @@ void press(LastChance& chance, SeenDevice& device, Seen& seen, const std::functi
   }
 }
 
-class LastChanceTest : public ::testing::Test {
+class CrashHandlerTest : public ::testing::Test {
  protected:
   void SetUp() override {
     void* memory = ::mmap(nullptr, sizeof(Seen), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -83,12 +83,12 @@ class LastChanceTest : public ::testing::Test {
   Seen* seen_ = nullptr;
 };
 
-TEST_F(LastChanceTest, CrashOfAnotherThreadEndsInZeroForce) {
+TEST_F(CrashHandlerTest, CrashOfAnotherThreadEndsInZeroForce) {
   for (const int number : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE}) {
     const int ended_by = signal_of_child([&] {
       SeenDevice device(*seen_);
-      LastChance chance(device);
-      std::thread servo([&] { press(chance, device, *seen_, {}); });
+      CrashHandler handler(device);
+      std::thread servo([&] { press(handler, device, *seen_, {}); });
       while (seen_->writes_by_servo < 10) std::this_thread::yield();
       ::raise(number);
     });
@@ -99,11 +99,11 @@ TEST_F(LastChanceTest, CrashOfAnotherThreadEndsInZeroForce) {
   }
 }
 
-TEST_F(LastChanceTest, CrashOfTheRealTimeThreadEndsInZeroForce) {
+TEST_F(CrashHandlerTest, CrashOfTheRealTimeThreadEndsInZeroForce) {
   const int ended_by = signal_of_child([&] {
     SeenDevice device(*seen_);
-    LastChance chance(device);
-    std::thread servo([&] { press(chance, device, *seen_, [] { ::raise(SIGSEGV); }); });
+    CrashHandler handler(device);
+    std::thread servo([&] { press(handler, device, *seen_, [] { ::raise(SIGSEGV); }); });
     servo.join();
   });
   EXPECT_EQ(ended_by, SIGSEGV);
@@ -111,12 +111,12 @@ TEST_F(LastChanceTest, CrashOfTheRealTimeThreadEndsInZeroForce) {
   EXPECT_EQ(seen_->force_n, 0.0);
 }
 
-TEST_F(LastChanceTest, RealTimeThreadThatHangsDoesNotKeepTheForceOn) {
+TEST_F(CrashHandlerTest, RealTimeThreadThatHangsDoesNotKeepTheForceOn) {
   const int ended_by = signal_of_child([&] {
     SeenDevice device(*seen_);
-    LastChance chance(device);
+    CrashHandler handler(device);
     std::thread servo(
-        [&] { press(chance, device, *seen_, [] { std::this_thread::sleep_for(std::chrono::hours(1)); }); });
+        [&] { press(handler, device, *seen_, [] { std::this_thread::sleep_for(std::chrono::hours(1)); }); });
     while (seen_->writes_by_servo < 51) std::this_thread::yield();
     std::terminate();
   });
@@ -124,11 +124,11 @@ TEST_F(LastChanceTest, RealTimeThreadThatHangsDoesNotKeepTheForceOn) {
   EXPECT_EQ(seen_->force_n, 0.0);
 }
 
-TEST_F(LastChanceTest, StackOverflowEndsInZeroForce) {
+TEST_F(CrashHandlerTest, StackOverflowEndsInZeroForce) {
   const int ended_by = signal_of_child([&] {
     SeenDevice device(*seen_);
-    LastChance chance(device);
-    std::thread servo([&] { press(chance, device, *seen_, {}); });
+    CrashHandler handler(device);
+    std::thread servo([&] { press(handler, device, *seen_, {}); });
     const CrashStack stack;
     while (seen_->writes_by_servo < 10) std::this_thread::yield();
     const std::function<int(int)> endless = [&](int depth) {
@@ -142,13 +142,13 @@ TEST_F(LastChanceTest, StackOverflowEndsInZeroForce) {
   EXPECT_EQ(seen_->force_n, 0.0);
 }
 
-TEST_F(LastChanceTest, PausedDeviceIsLeftToWhoHasIt) {
+TEST_F(CrashHandlerTest, PausedDeviceIsLeftToWhoHasIt) {
   SeenDevice device(*seen_);
-  LastChance chance(device);
-  EXPECT_FALSE(chance.takes_over(true));
-  std::thread handler([&] { chance.let_go(); });
-  while (!chance.takes_over(true)) std::this_thread::yield();
-  handler.join();
+  CrashHandler handler(device);
+  EXPECT_FALSE(handler.takes_over(true));
+  std::thread crashing([&] { handler.command_zero_force(); });
+  while (!handler.takes_over(true)) std::this_thread::yield();
+  crashing.join();
   EXPECT_EQ(seen_->writes, 0);
 }
 
