@@ -32,8 +32,8 @@ void stop_loading(InsertionState& state) noexcept {
 bool meet(InsertionState& state, InsertionPath& path, const PatientNow& now, const Vec3& tip_P,
           const Vec3& axis_P) noexcept {
   if (!(skin_distance_mm(now, tip_P) < -state.recoil_mm)) return false;
-  constexpr double kBefore = 1.05;       // the recoil of the last tick was deeper by less
-  constexpr double kRounding_mm = 1e-6;  // a tip that just touched the skin pressed on nothing
+  constexpr double kBefore = 1.05;                              // the recoil of the last tick was deeper by less
+  constexpr double kRounding_mm = 1e-6;                         // a tip that just touched the skin pressed on nothing
   const Vec3 before_P = now.motion.to_now(state.device_tip_A);  // the skin may have come to the tip
   const double before_mm = skin_distance_mm(now, before_P);
   if (before_mm < -kBefore * state.recoil_mm - kRounding_mm) return false;
