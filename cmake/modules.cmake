@@ -8,7 +8,7 @@ set(trocar_light_modules config signing database dicom io png scene scoring stor
   web)
 
 # What reads files of others, talks to devices and clients, or repeats whole attempts: minutes in a Debug build with sanitizers, too.
-set(trocar_quick_modules core realtime config geometry volume telemetry link devices server io dicom storage signing learning database
+set(trocar_quick_modules core realtime config geometry volume motion telemetry link devices server io dicom storage signing learning database
   results web)
 
 # What reads bytes of files, devices and clients as numbers: every pointer is checked under the sanitizers.

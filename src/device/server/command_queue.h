@@ -37,7 +37,7 @@ class CommandQueue {
     return applied_.load(std::memory_order_acquire) == stops_.load(std::memory_order_relaxed);
   }
 
-  // Real-time thread. Call apply_stops() in every period, also while the device is lent.
+  // Real-time thread. Call apply_stops() in every period, also while the device is leased.
   /// Applies the stops received so far. Returns true if there was one since the last call.
   bool apply_stops(ServoSwitches& switches) const noexcept {
     return switches.apply_stops(stops_.load(std::memory_order_acquire));

@@ -27,7 +27,7 @@ class CrashHandler {
   /// Registers the calling thread as the thread that writes to the device.
   void adopt_thread() noexcept;
   /// That thread calls it at the start of every period. Returns true if the process is ending: the thread must not
-  /// write any more; zero has been written unless the device is lent (`is_leased`). Real-time safe.
+  /// write any more; zero has been written unless the device is leased. Real-time safe.
   bool takes_over(bool is_leased) noexcept;
 
   /// Commands zero force; called by the signal handler. Async-signal-safe as far as the device's write() is real-time

@@ -74,8 +74,8 @@ class Servo {
   telemetry::GateMode mode() const noexcept { return gate_.mode; }
   /// True if the last written wrench is not zero.
   bool gives_force() const noexcept;
-  /// Call it after the device was lent: earlier readings and outputs are discarded, and forces return through the safe
-  /// start. A fault is kept.
+  /// Call it after the device was leased: earlier readings and outputs are discarded, and forces return through the
+  /// safe start. A fault is kept.
   void resume() noexcept;
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStatistics_s = 0.05;  // interval of copying the statistics
 
-/// Applies the stops; called in every period, also while the device is lent.
+/// Applies the stops; called in every period, also while the device is leased.
 void apply_stops(Shared& shared, ServoSwitches& switches, const realtime::Period& period,
                  StopStatistics& stops) noexcept {
   if (!shared.commands.apply_stops(switches)) return;
@@ -85,7 +85,8 @@ void run_servo_thread(Shared& shared, Servo& servo, int priority) noexcept {
         input.hand = take_hand(shared, placements);
         const std::int64_t heard_ns = shared.heard_ns.load(std::memory_order_relaxed);
         input.silence_s = heard_ns == 0 ? kNeverHeard_s : realtime::seconds(period.begin_ns - heard_ns);
-        input.is_wanted = switches.is_wanted && !request.is_open;  // on request: forces fade before the device is lent
+        input.is_wanted =
+            switches.is_wanted && !request.is_open;  // on request: forces fade before the device is leased
         input.is_stylet_in = switches.is_stylet_in;
         input.is_reset = switches.is_reset;
         input.busy_s = realtime::seconds(busy_ns);

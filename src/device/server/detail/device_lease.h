@@ -12,7 +12,7 @@ class DeviceLease {
   /// State of the lease at the beginning of a period of the real-time thread.
   struct Request {
     std::uint64_t ticket = 0;
-    bool is_open = false;  ///< The device is requested or lent.
+    bool is_open = false;  ///< The device is requested or leased.
   };
 
   // Control thread.

@@ -27,7 +27,7 @@ TEST(DeviceLease, IsGrantedAfterAPeriodThatSawTheRequest) {
   EXPECT_FALSE(lease.is_leased(ticket));
   EXPECT_FALSE(Period(lease).end());
   EXPECT_TRUE(lease.is_leased(ticket));
-  EXPECT_FALSE(Period(lease).end()) << "as long as it is lent";
+  EXPECT_FALSE(Period(lease).end()) << "as long as it is leased";
   lease.give_back(ticket);
   EXPECT_TRUE(Period(lease).end());
 }

@@ -48,7 +48,7 @@ TEST_F(Return, OfADeviceThatWasLent) {
     rig.step();
     ++periods;
   }
-  EXPECT_LE(periods, 210) << "the forces fade before the device is lent";
+  EXPECT_LE(periods, 210) << "the forces fade before the device is leased";
   rig.device.reading.X_DS = needle_at_depth(8.0);  // it was moved meanwhile, and deeper
   rig.depth = 8.0;
   rig.last_n = 0.0;

@@ -41,7 +41,7 @@ class SkinField {
   std::optional<SkinHere> at(const Vec3& p_P) const noexcept {
     auto skin = at_rest(motion_.to_rest(p_P));
     if (!skin || motion_.is_rest()) return skin;
-    // The gradient of the distance at rest, now: its length is how much nearer the skin is at rest than now.
+    // The unit gradient of the distance at rest, now: its length is how much nearer the skin is now than at rest.
     const Vec3 gradient_P = motion_.gradient_to_now(skin->p_A, skin->normal_P);
     const double length = gradient_P.norm();
     return SkinHere{skin->distance_mm / length, gradient_P / length, skin->p_A};

@@ -123,7 +123,7 @@ struct GateOutput {
   double drop_s = 0.0;        ///< Duration of that drop; zero otherwise.
 };
 
-/// Call after the device was lent. Resets the last output, energy, speed and drop; forces return through the safe
+/// Call after the device was leased. Resets the last output, energy, speed and drop; forces return through the safe
 /// start. A fault and the motor temperature are kept.
 void restart_gate(GateState& state) noexcept;
 

@@ -7,7 +7,14 @@
 namespace trocar::haptics {
 
 double skin_distance_mm(const PatientNow& now, const Vec3& p_P) noexcept {
-  return volume::sample_linear(now.scene.patient->skin_distance_mm, now.motion.to_rest(p_P));
+  const volume::FloatGrid& distance = now.scene.patient->skin_distance_mm;
+  const Vec3 p_A = now.motion.to_rest(p_P);
+  const double at_rest_mm = volume::sample_linear(distance, p_A);
+  if (now.motion.is_rest()) return at_rest_mm;
+  // The unit gradient of the distance at rest, now: how much nearer the skin is now than at rest.
+  const Vec3 gradient_A = volume::gradient_per_mm(distance, p_A).stableNormalized();
+  const double per_mm = now.motion.gradient_to_now(p_A, gradient_A).norm();
+  return per_mm > 0.0 ? at_rest_mm / per_mm : at_rest_mm;
 }
 
 Vec3 inward_normal(const PatientNow& now, const Vec3& p_P) noexcept {

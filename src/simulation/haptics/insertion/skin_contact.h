@@ -7,8 +7,8 @@ namespace trocar::haptics {
 /// A needle flatter to the skin than this does not pierce it: cosine of 80 degrees to the normal.
 inline constexpr double kGrazing = 0.17;
 
-/// Signed distance (mm) to the undented skin, negative inside the body, and the unit normal into the body. Where the
-/// patient moves, the distance is that of the same tissue at rest. Real-time safe.
+/// Signed distance (mm, in P, also where motion compresses the tissue) to the undented skin, negative inside the body,
+/// and the unit normal into the body. Real-time safe.
 double skin_distance_mm(const PatientNow& now, const Vec3& p_P) noexcept;
 Vec3 inward_normal(const PatientNow& now, const Vec3& p_P) noexcept;
 /// The point of the undented skin nearest to a point close to it. Real-time safe.

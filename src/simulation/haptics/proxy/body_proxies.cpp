@@ -344,9 +344,8 @@ ShaftReaction react(const HeldShaft& shaft, const HapticScene& scene, const Vec3
     deflection_P[index] *= scale;
     const double k = shaft.share * shaft.bed.stiffness_n_per_mm[index];
     const Vec3 bed_P = k * (shaft.bed.offset_mm[index] - deflection_P[index]);
-    Vec3 force_P =
-        across(bed_P, shaft.is_straight ? shaft.line_P
-                                        : shaft.bent_P[index]);  // a motion along the channel does not stretch the bed
+    // A motion along the channel does not stretch the bed.
+    Vec3 force_P = across(bed_P, shaft.is_straight ? shaft.line_P : shaft.bent_P[index]);
     if (i == nodes - 1) force_P += shaft.share * tip_P;
     reaction.wrench_P.force_n += force_P;
     moment_P += spacing_mm * (i + 1) * force_P + shaft.along_mm[index] * bed_P;

@@ -200,6 +200,34 @@ TEST_P(MovingPatient, IsCoupledInTheRoom) {
   EXPECT_NEAR(stiffness_n_per_mm(stretched({0.0, 0.0, -40.0})), at_rest, 0.02 * at_rest);
 }
 
+/// Distances to the skin are those in the room, however much the tissue is compressed or stretched.
+TEST(MovingPatientSkin, IsAsFarAsInTheRoom) {
+  const auto scene = make_scene(liver_way());
+  const auto model = stretched({0.0, 0.0, -50.0});
+  for (const double share : {1.5, 1.0, -1.0}) {
+    const motion::PatientMotion now(model.get(), held({share}));
+    for (const double z : {-4.0, 0.5, 5.0}) {
+      const Vec3 p_P(3.0, -2.0, z);
+      EXPECT_NEAR(haptics::skin_distance_mm({*scene, now}, p_P), -z, 1e-3) << share;
+      EXPECT_LT((haptics::nearest_skin({*scene, now}, p_P) - Vec3(3.0, -2.0, 0.0)).norm(), 1e-3) << share;
+    }
+  }
+}
+
+/// Tissue that is stretched at an even rate e moves past the middle of a shaft of length L by e L / 2 more slowly than
+/// past its tip.
+TEST(MovingPatientShaft, TakesTheMeanVelocityOfItsTissue) {
+  const auto model = stretched({0.0, 0.0, 30.0});
+  MovingLab lab(make_scene(liver_way()), model, [](double) { return held({}); });
+  for (double z = -3.0; z < 60.0; z += 0.02) lab.needle_to({0.0, 0.0, z});
+  MotionState stretching = held({});
+  stretching.rates_per_s[0] = 0.5;
+  const motion::PatientMotion now(model.get(), stretching);
+  constexpr double kRate_per_s = 0.5 * 30.0 / 100.0, kDepth_mm = 50.0;
+  const double drift = haptics::tissue_drift_mm_per_s(lab.state.needle.path.channel, {lab.scene(), now}, kDepth_mm);
+  EXPECT_NEAR(drift, 0.5 * kRate_per_s * kDepth_mm, 1e-3);
+}
+
 /// Liver that slides below the wall takes the tip along; the wall holds the shaft: the needle bends, in the way that
 /// the liver went, and the hand is pulled that way.
 TEST_P(MovingPatient, BendsANeedleInSlidingTissue) {

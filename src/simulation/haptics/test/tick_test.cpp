@@ -69,6 +69,43 @@ TEST(Tick, ComposesTheTotalFromAllItsParts) {
   }
 }
 
+/// Nothing touches a needle in the air: the stylus' weight is all there is, also on a device without torque.
+TEST(Tick, KeepsTheWeightApartFromTheTissue) {
+  for (const double peak_torque_nmm : {515.0, 0.0}) {
+    haptics::DeviceCapability device;
+    device.peak_torque_nmm = peak_torque_nmm;
+    const auto scene = haptics::make_haptic_scene(layered_patient(liver_way()), paper_tissues(), {}, device, {});
+    ASSERT_TRUE(scene) << scene.error().text();
+    haptics::HapticState state;
+    haptics::HapticInput input;
+    input.tool = telemetry::to_tool_pose(needle_pose({0, 0, -10.0}, Vec3(0.3, 0.2, 1.0).normalized()));
+    const haptics::HapticOutput output = haptics::tick(state, input, **scene);
+    EXPECT_EQ(output.tissue_W.force_n, Vec3::Zero());
+    EXPECT_EQ(output.tissue_W.torque_nmm, Vec3::Zero());
+    EXPECT_NEAR(output.weight_W.force_n.norm(), device.stylus_weight_n, 1e-12);
+    EXPECT_GT(output.sample.tau_nmm.norm(), 1.0) << "its lever";
+  }
+}
+
+/// A tip that stops on the skin to within rounding has met it when it goes on.
+TEST(Tick, MeetsTheSkinAfterAStopOnIt) {
+  for (const haptics::ForceModel model :
+       {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
+    for (const double stop_mm : {-1e-9, 0.0, 1e-14, 3e-14, 1e-13, 1e-12, 1e-9}) {
+      Driver driver(make_scene(liver_way(), model));
+      driver.move(-0.02, 20.0);
+      driver.to({0.0, 0.0, stop_mm});
+      for (double z = 0.02; z < 2.0; z += 0.02) {
+        const telemetry::TickSample sample = driver.to({0.0, 0.0, z});
+        ASSERT_EQ(sample.events[0].kind, telemetry::EventKind::kNone) << to_string(model) << " from " << stop_mm;
+        if (z > 0.5) {
+          ASSERT_EQ(sample.phase, telemetry::InsertionPhase::kLoading) << to_string(model) << " from " << stop_mm;
+        }
+      }
+    }
+  }
+}
+
 TEST(Tick, GivesTheDeviceTheForceOfTheCoupling) {
   // physics.md V1: along the path the device is pushed back by k_c (s_D - s) + b_c (v_D - v), which balances all
   // resistances. Here from the recorded places alone, without the recorded terms.
