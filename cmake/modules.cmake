@@ -3,7 +3,7 @@
 # What it links is what src/modules.txt allows it to include.
 
 # Modules that read, write, record and show results: no loop of theirs takes long, and less optimising saves a third of the time
-# to compile them. Import takes as long as with -O3 (docs/validation_history.md).
+# to compile them. Import takes as long as with -O3.
 set(trocar_light_modules config signing database dicom io png scene scoring storage learning cohort results exams report case_builder
   web)
 
@@ -232,7 +232,7 @@ function(trocar_add_test name library)
     endif()
   endforeach()
   if(name STREQUAL "cases")
-    add_test(NAME embedded_patient COMMAND cases_test --gtest_filter=OpenedCase.HoldsAllThatIsShown)
+    add_test(NAME embedded_patient COMMAND cases_test --gtest_filter=OpenedCase.HoldsAllDisplayedData)
     set_tests_properties(embedded_patient PROPERTIES FIXTURES_SETUP embedded_patient TIMEOUT ${timeout_s} COST 1000
       ENVIRONMENT "${environment}")
   endif()

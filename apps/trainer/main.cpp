@@ -76,7 +76,8 @@ void add_options(arguments::Program& app, Arguments& arguments) {
   app.footer(
       "Examples:\n  trocar-trainer --task liver-biopsy --patient abdomen\n"
       "  trocar-trainer --script steps.txt --screenshot window.png\n\n"
-      "Steps of a script: click, drag, wheel, key, choose, set, wait-for, expect, screenshot … (docs/user_guide.md)");
+      "Steps of a script: click, drag, wheel, key, choose, set, wait-for, expect, screenshot … "
+      "(docs/how_to/script_the_trainer.md)");
 }
 
 /// Applies the arguments before there is a window: an unknown name is an error.

@@ -88,7 +88,7 @@ TEST(ActionTable, EveryKeyFindsItsAction) {
   }
 }
 
-TEST(ActionTable, SignsAndDigitsNeedNoShiftAndTheKeypadCounts) {
+TEST(ActionTable, MatchesSymbolsWithAnyShiftStateAndOnTheKeypad) {
   const QKeyEvent shifted(QEvent::KeyPress, Qt::Key_Plus, Qt::ShiftModifier);
   EXPECT_EQ(find_action(Scope::kView3d, shifted)->action, Action::kZoom3d);
   const QKeyEvent french(QEvent::KeyPress, Qt::Key_3, Qt::ShiftModifier);
@@ -99,7 +99,7 @@ TEST(ActionTable, SignsAndDigitsNeedNoShiftAndTheKeypadCounts) {
   EXPECT_FALSE(find_action(Scope::kPuncture, letter));
 }
 
-TEST(ActionTable, NoTwoActionsOfAPageClaimAKey) {
+TEST(ActionTable, HasNoKeyConflictsWithinAPage) {
   for (const Scope page : {Scope::kStart, Scope::kBriefing}) expect_no_conflict({Scope::kWindow, page});
   expect_no_conflict({Scope::kWindow, Scope::kPanel, Scope::kCaseBuilder});
   for (const Scope page : {Scope::kPuncture, Scope::kFeedback})
@@ -109,7 +109,7 @@ TEST(ActionTable, NoTwoActionsOfAPageClaimAKey) {
 }
 
 /// Space, and the letters and Enter that act on the patient, are never taken by a view that has the focus, except P.
-TEST(ActionTable, NoViewHidesAKeyThatActsOnThePatient) {
+TEST(ActionTable, ReservesPatientKeysInEveryView) {
   for (const ActionRow* row : rows_of({Scope::kPuncture})) {
     if (!row->acts_on_patient && row->action != Action::kForces && row->action != Action::kEnd) continue;
     for (const QKeySequence& key : keys_of(row->action))
@@ -118,11 +118,11 @@ TEST(ActionTable, NoViewHidesAKeyThatActsOnThePatient) {
   }
 }
 
-TEST(ActionTable, IsTheTableOfTheUserGuide) {
-  QFile guide(QString::fromStdString((testing::source_dir() / "docs/user_guide.md").string()));
-  ASSERT_TRUE(guide.open(QIODevice::ReadOnly));
-  EXPECT_TRUE(QString::fromUtf8(guide.readAll()).contains(actions_as_markdown()))
-      << "replace the table in docs/user_guide.md with what trocar-trainer --keys prints:\n"
+TEST(ActionTable, MatchesTheKeysPage) {
+  QFile page(QString::fromStdString((testing::source_dir() / "docs/keys.md").string()));
+  ASSERT_TRUE(page.open(QIODevice::ReadOnly));
+  EXPECT_TRUE(QString::fromUtf8(page.readAll()).contains(actions_as_markdown()))
+      << "replace the table in docs/keys.md with what trocar-trainer --keys prints:\n"
       << actions_as_markdown().toStdString();
 }
 
@@ -136,7 +136,7 @@ bool is_view_or_button(const QWidget& widget) {
 }
 
 /// Every dangerous key with the focus on every widget that takes it, in the real page with all its views.
-TEST(ActionKeys, ThatActOnThePatientAreRefusedByEveryWidgetInWhichSomebodyTypesOrChooses) {
+TEST(ActionKeys, PatientKeysDoNothingInTextFieldsAndLists) {
   QSettings().clear();
   WorkPage page;
   page.resize(1600, 1000);

@@ -20,7 +20,7 @@ struct FileLimit {
   std::uint64_t max_bytes;  ///< A larger file is refused before it is read.
 };
 
-/// The one table of size limits; docs/user_guide.md lists the same numbers.
+/// The one table of size limits; docs/patient_files.md lists the same numbers.
 std::span<const FileLimit> file_limits() noexcept;
 const FileLimit& limit_of(FileKind kind);
 

@@ -13,7 +13,7 @@ namespace {
 
 using detail::ReadingMatch;
 
-// Points of ReadingMatch. [assumed: no right segmentation of docs/validation.md, section Findings, has half as many]
+// Points of ReadingMatch. [assumed: no right segmentation among the test data has half as many]
 constexpr double kClear = 1.4;   ///< From here on a reading contradicts the CT, as an organ on the other side does.
 constexpr double kFits = 1.5;    ///< Up to here it fits.
 constexpr double kAsGood = 1.0;  ///< Nothing decides between two that differ by less.

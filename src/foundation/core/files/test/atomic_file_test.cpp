@@ -46,7 +46,7 @@ class FullDisk {
   void (*signal_before_)(int) = nullptr;
 };
 
-TEST_F(AtomicFile, WritesWhatItIsGiven) {
+TEST_F(AtomicFile, WritesTheGivenBytes) {
   const fs::path target = folder_ / "a.txt";
   ASSERT_TRUE(write_file_atomically(target, "one"));
   EXPECT_EQ(read_file(target).value(), "one");
@@ -60,7 +60,7 @@ TEST_F(AtomicFile, MakesMissingFolders) {
   EXPECT_TRUE(fs::exists(folder_ / "new" / "deeper" / "a.txt"));
 }
 
-TEST_F(AtomicFile, LeavesTheOldFileWhereTheDiskIsFull) {
+TEST_F(AtomicFile, KeepsTheOldFileWhenTheDiskIsFull) {
   const fs::path target = folder_ / "a.bin";
   ASSERT_TRUE(write_file_atomically(target, "old"));
   {
@@ -83,12 +83,12 @@ TEST_F(AtomicFile, LeavesNothingWhereTheWriterFails) {
   EXPECT_EQ(entries(), 0u);
 }
 
-TEST_F(AtomicFile, SaysSoWhereTheWriterWroteNothing) {
+TEST_F(AtomicFile, FailsWhenTheWriterWritesNothing) {
   EXPECT_FALSE(write_atomically(folder_ / "a.txt", [](const fs::path&) -> Status { return {}; }));
   EXPECT_EQ(entries(), 0u);
 }
 
-TEST_F(AtomicFile, KeepsTheEndingThatFormatsAreChosenBy) {
+TEST_F(AtomicFile, KeepsTheFileExtension) {
   for (const char* name : {"ct.nii.gz", "ct.nrrd", "mesh.vtp"}) {
     ASSERT_TRUE(write_atomically(folder_ / name, [&](const fs::path& temporary) -> Status {
       EXPECT_EQ(temporary.parent_path(), folder_);
@@ -101,7 +101,7 @@ TEST_F(AtomicFile, KeepsTheEndingThatFormatsAreChosenBy) {
   EXPECT_EQ(entries(), 3u);
 }
 
-TEST_F(AtomicFile, RefusesAPlaceInsideAFile) {
+TEST_F(AtomicFile, RefusesATargetInsideAFile) {
   ASSERT_TRUE(write_file_atomically(folder_ / "file", "x"));
   const Status status = write_file_atomically(folder_ / "file" / "a.txt", "y");
   ASSERT_FALSE(status);
@@ -114,20 +114,20 @@ Status write_two_files(const fs::path& temporary) {
   return write_file_atomically(temporary / "b", "2");
 }
 
-TEST_F(AtomicFile, WritesAFolderWhole) {
+TEST_F(AtomicFile, WritesACompleteFolder) {
   ASSERT_TRUE(write_folder_atomically(folder_ / "patient", write_two_files));
   EXPECT_EQ(read_file(folder_ / "patient" / "b").value(), "2");
   EXPECT_EQ(entries(), 1u);
 }
 
-TEST_F(AtomicFile, WritesAFolderNamedWithASlashAtTheEnd) {
+TEST_F(AtomicFile, WritesAFolderWithATrailingSlash) {
   const Status status = write_folder_atomically(folder_.string() + "/patient/", write_two_files);
   ASSERT_TRUE(status) << status.error().text();
   EXPECT_EQ(read_file(folder_ / "patient" / "a").value(), "1");
   EXPECT_EQ(entries(), 1u);
 }
 
-TEST_F(AtomicFile, NeverOverwritesAFolderWithSomethingInIt) {
+TEST_F(AtomicFile, NeverOverwritesANonEmptyFolder) {
   fs::create_directories(folder_ / "patient");
   ASSERT_TRUE(write_folder_atomically(folder_ / "patient", write_two_files));  // an empty one is taken
   const Status again = write_folder_atomically(folder_ / "patient", write_two_files);
@@ -146,7 +146,7 @@ TEST_F(AtomicFile, LeavesNoFolderWhereTheWriterFails) {
   EXPECT_EQ(entries(), 0u);
 }
 
-TEST_F(AtomicFile, ReadingSaysWhatIsWrong) {
+TEST_F(AtomicFile, ReportsReadErrors) {
   EXPECT_EQ(read_file(folder_ / "none").error().what, "no such file");
   EXPECT_EQ(read_file(folder_).error().what, "is a folder, not a file");
   ASSERT_TRUE(write_file_atomically(folder_ / "long", "123456"));

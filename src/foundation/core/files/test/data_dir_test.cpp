@@ -7,7 +7,7 @@
 namespace trocar {
 namespace {
 
-TEST(DataDir, IsTheFolderThatTheEnvironmentNames) {
+TEST(DataDir, ComesFromTheEnvironment) {
   const std::filesystem::path before = data_dir();
   EXPECT_TRUE(std::filesystem::exists(before / "tissues.toml"));
   {

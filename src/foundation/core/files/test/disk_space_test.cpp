@@ -9,19 +9,19 @@ namespace trocar {
 inline namespace core {
 namespace {
 
-TEST(DiskSpace, IsKnownOfAFolderAndOfNothingElse) {
+TEST(DiskSpace, IsKnownOnlyForAFolder) {
   const TemporaryFolder folder;
   EXPECT_TRUE(find_free_bytes(folder.path()));
   EXPECT_FALSE(find_free_bytes("/nowhere/at/all"));
 }
 
-TEST(DiskSpace, AWritableFolderIsMadeAndStaysEmpty) {
+TEST(DiskSpace, CreatesAnEmptyWritableFolder) {
   const TemporaryFolder folder;
   ASSERT_TRUE(make_writable_folder(folder / "a/b"));
   EXPECT_TRUE(std::filesystem::is_empty(folder / "a/b"));
 }
 
-TEST(DiskSpace, AFolderThatCannotBeMadeIsNamedWithTheReason) {
+TEST(DiskSpace, NamesAFolderThatCannotBeCreated) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_file_atomically(folder / "file", "text"));
   const Status made = make_writable_folder(folder / "file/inside");

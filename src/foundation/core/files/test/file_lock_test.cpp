@@ -64,7 +64,7 @@ TEST(FileLock, IsReleasedWhenItsProcessIsKilled) {
   ::close(told[1]);
 }
 
-TEST(FileLock, SaysWhichFileCannotBeOpened) {
+TEST(FileLock, NamesAFileThatCannotBeOpened) {
   const auto lock = FileLock::try_lock("/nowhere/a.lock");
   ASSERT_FALSE(lock);
   EXPECT_EQ(lock.error().where, "/nowhere/a.lock");

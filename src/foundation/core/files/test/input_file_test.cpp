@@ -75,7 +75,7 @@ TEST_F(InputFileTest, RefusesASocket) {
   ::close(socket);
 }
 
-TEST_F(InputFileTest, RefusesFoldersAndWhatIsMissing) {
+TEST_F(InputFileTest, RefusesFoldersAndMissingFiles) {
   EXPECT_EQ(error_of(folder_.path()), "is a folder, not a file");
   EXPECT_EQ(error_of(folder_ / "none"), "no such file");
   fs::create_symlink("circle", folder_ / "circle");
@@ -92,7 +92,7 @@ TEST_F(InputFileTest, RefusesEachKindAboveItsLimit) {
   }
 }
 
-TEST_F(InputFileTest, RefusesALinkThatLeadsOutOfTheFolder) {
+TEST_F(InputFileTest, RefusesALinkOutOfTheFolder) {
   write("patient/a.toml", "inside");
   write("secret", "outside");
   write("patient2/b", "a folder whose name only begins alike");
@@ -112,7 +112,7 @@ TEST_F(InputFileTest, RefusesALinkThatLeadsOutOfTheFolder) {
   EXPECT_TRUE(InputFile::open(folder_ / "alias" / "a.toml", FileKind::kToml, folder_ / "alias"));
 }
 
-TEST_F(InputFileTest, KeepsTheFileThatWasCheckedWhenThePathIsReplaced) {
+TEST_F(InputFileTest, ReadsTheCheckedFileWhenThePathIsReplaced) {
   const fs::path path = write("a", "checked");
   const auto file = InputFile::open(path, FileKind::kToml);
   ASSERT_TRUE(file);
@@ -122,7 +122,7 @@ TEST_F(InputFileTest, KeepsTheFileThatWasCheckedWhenThePathIsReplaced) {
   EXPECT_EQ(file->read_all().value(), "checked");
 }
 
-TEST_F(InputFileTest, ReadsAFileThatGrowsUpToTheLimitOnly) {
+TEST_F(InputFileTest, ReadsAGrowingFileUpToTheLimit) {
   const fs::path path = write("a", "12345");
   FileLimit limit = limit_of(FileKind::kOther);
   limit.max_bytes = 8;
@@ -136,19 +136,19 @@ TEST_F(InputFileTest, ReadsAFileThatGrowsUpToTheLimitOnly) {
   EXPECT_FALSE(read_input("/proc/self/status", FileKind::kOther)->empty());
 }
 
-TEST_F(InputFileTest, TheUserGuideListsTheLimits) {
-  const std::string guide = *read_file(testing::source_dir() / "docs" / "user_guide.md");
+TEST_F(InputFileTest, LimitsMatchThePatientFilesPage) {
+  const std::string page = *read_file(testing::source_dir() / "docs" / "patient_files.md");
   for (const FileLimit& limit : file_limits()) {
     if (limit.kind == FileKind::kOther) continue;
     constexpr std::uint64_t kMiB = 1 << 20, kGiB = 1 << 30;
     const std::string size = limit.max_bytes >= kGiB ? std::to_string(limit.max_bytes / kGiB) + " GiB"
                                                      : std::to_string(limit.max_bytes / kMiB) + " MiB";
     const std::string row = "| " + std::string(limit.name) + " | " + size + " |";
-    EXPECT_NE(guide.find(row), std::string::npos) << row;
+    EXPECT_NE(page.find(row), std::string::npos) << row;
   }
 }
 
-TEST(AvailableMemory, AnImageNeedsRoomForItselfAndACopy) {
+TEST(AvailableMemory, RefusesAnImageWithoutRoomForACopy) {
   EXPECT_GT(available_memory_bytes(), 0u);
   EXPECT_TRUE(check_memory_for_image(500, 1000, "ct.nrrd"));
   const Status refused = check_memory_for_image(501, 1000, "ct.nrrd");

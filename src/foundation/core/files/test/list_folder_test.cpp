@@ -29,7 +29,7 @@ std::vector<std::string> names(const Result<std::vector<fs::path>>& listed, cons
   return names;
 }
 
-TEST(ListFolder, IsSortedAndDoesNotEnterFolders) {
+TEST(ListFolder, IsSortedAndNotRecursive) {
   const TemporaryFolder folder;
   touch(folder / "b");
   touch(folder / "a" / "inner");
@@ -37,7 +37,7 @@ TEST(ListFolder, IsSortedAndDoesNotEnterFolders) {
   EXPECT_EQ(names(list_folder(folder.path()), folder.path()), (std::vector<std::string>{".hidden", "a", "b"}));
 }
 
-TEST(ListFolder, OfNoFolderIsAnError) {
+TEST(ListFolder, FailsForANonFolder) {
   const TemporaryFolder folder;
   touch(folder / "file");
   for (const char* name : {"nowhere", "file", "file/below", ""}) {
@@ -46,7 +46,7 @@ TEST(ListFolder, OfNoFolderIsAnError) {
   }
 }
 
-TEST(ListTree, HasTheEntriesAfterTheirFolderAndFollowsNoLinks) {
+TEST(ListTree, ListsFoldersFirstAndFollowsNoLinks) {
   const TemporaryFolder folder;
   touch(folder / "a" / "b" / "c");
   touch(folder / "a" / "x");
@@ -61,7 +61,7 @@ TEST(ListTree, HasTheEntriesAfterTheirFolderAndFollowsNoLinks) {
             names(list_folder(folder.path()), folder.path()));
 }
 
-TEST(ListTree, SkipsAnUnreadableFolderOnlyIfToldTo) {
+TEST(ListTree, SkipsAnUnreadableFolderOnlyOnRequest) {
   if (::geteuid() == 0) GTEST_SKIP() << "root reads every folder";
   const TemporaryFolder folder;
   touch(folder / "a" / "file");
@@ -72,7 +72,7 @@ TEST(ListTree, SkipsAnUnreadableFolderOnlyIfToldTo) {
 }
 
 /// Folders come and go all the time: none of the lists is an error, and none throws.
-TEST(ListTree, SkipsFoldersThatVanishMeanwhile) {
+TEST(ListTree, SkipsFoldersThatVanishDuringTheWalk) {
   const TemporaryFolder folder;
   touch(folder / "stays");
   std::atomic<bool> is_ending{false};

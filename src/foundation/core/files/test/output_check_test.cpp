@@ -26,7 +26,7 @@ TEST(OutputCheck, LeavesNothingBehind) {
   EXPECT_TRUE(folder.is_empty());
 }
 
-TEST(OutputCheck, FindsWhatCannotBeWritten) {
+TEST(OutputCheck, DetectsUnwritablePaths) {
   const TemporaryFolder folder;
   std::ofstream(folder / "file") << "x";
   EXPECT_NE(refusal(folder / "file/below").find("Not a directory"), std::string::npos);

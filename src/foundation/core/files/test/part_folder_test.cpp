@@ -60,7 +60,7 @@ Status write_one(const fs::path& temporary) {
   return write_file_atomically(temporary / "a", "1");
 }
 
-TEST(PartFolder, OfAKilledProcessIsRemovedByTheNextOutputOfTheSameName) {
+TEST(PartFolder, IsRemovedByTheNextOutputAfterAKill) {
   const TemporaryFolder folder;
   const fs::path target = folder / "dicom1";
   StoppedWriter writer(target);
@@ -73,7 +73,7 @@ TEST(PartFolder, OfAKilledProcessIsRemovedByTheNextOutputOfTheSameName) {
   EXPECT_TRUE(fs::exists(target / "a"));
 }
 
-TEST(PartFolder, OfARunningProcessStays) {
+TEST(PartFolder, StaysWhileItsProcessRuns) {
   const TemporaryFolder folder;
   const fs::path target = folder / "dicom1";
   StoppedWriter running(target);
@@ -84,7 +84,7 @@ TEST(PartFolder, OfARunningProcessStays) {
   EXPECT_FALSE(fs::exists(killed.part()));
 }
 
-TEST(PartFolder, InUseIsNotTakenOver) {
+TEST(PartFolder, IsNotTakenOverWhileInUse) {
   const TemporaryFolder folder;
   const fs::path path = folder / ".a.7.part";
   auto first = PartFolder::create(path);
@@ -125,7 +125,7 @@ TEST(PartFolder, KeepsTheEndingOfItsTarget) {
   EXPECT_EQ(part_path("/x/case.1", 7), "/x/.case.7.part.1");
 }
 
-TEST(PartFolder, ThatCannotBeMadeIsNamed) {
+TEST(PartFolder, NamesAFolderThatCannotBeCreated) {
   const auto part = PartFolder::create("/nowhere/.a.7.part");
   ASSERT_FALSE(part);
   EXPECT_EQ(part.error().where, "/nowhere/.a.7.part");
