@@ -26,33 +26,33 @@ TEST(TypeDefinitions, AreFoundWithTheirNamespacesAndEnclosingTypes) {
   EXPECT_EQ(names_of("struct [[nodiscard]] S {};"), "S ");
 }
 
-TEST(TypeDefinitions, HaveTheirLine) {
+TEST(TypeDefinitions, HaveLineNumbers) {
   const auto types = find_type_definitions("// struct A {};\n/* struct\nB {}; */\nstruct C\n{};\n");
   ASSERT_EQ(types.size(), 1u);
   EXPECT_EQ(types[0].name, "C");
   EXPECT_EQ(types[0].line, 5);
 }
 
-TEST(TypeDefinitions, LeaveOutWhatOtherFilesCannotSee) {
+TEST(TypeDefinitions, ExcludeFileLocalTypes) {
   EXPECT_EQ(names_of("namespace { struct S {}; }\nnamespace a { namespace { class C {}; } }"), "");
   EXPECT_EQ(names_of("void f() { struct Local { int i; }; if (x) { enum E { k }; } }"), "");
   EXPECT_EQ(names_of("auto f = [](int) { struct Local {}; };"), "");
 }
 
-TEST(TypeDefinitions, LeaveOutWhatDefinesNoType) {
+TEST(TypeDefinitions, ExcludeNonDefinitions) {
   EXPECT_EQ(names_of("struct S;\nenum class E : int;\nclass C *p = {};\nusing T = S;"), "");
   EXPECT_EQ(names_of("struct S f() { return {}; }\nvoid g(struct S* s) {}\ntemplate <class T> void h() {}"), "");
   EXPECT_EQ(names_of("template <> struct hash<S> { };\nstruct { int i; } nameless;"), "");
   EXPECT_EQ(names_of("const char* t = \"struct S {\"; char c = '{'; int n = 1'000; auto r = R\"x(struct R {)x\";"), "");
 }
 
-TEST(TypeDefinitions, TakeTheFirstBranchOfACondition) {
+TEST(TypeDefinitions, UseTheFirstBranchOfAConditional) {
   EXPECT_EQ(
       names_of("#ifdef A\nstruct S {\n#else\nstruct S { int i;\n#endif\n};\n#define M \\\n  struct T {\nstruct U {};"),
       "S U ");
 }
 
-TEST(RepeatedTypes, AreThoseOfOneNamespaceAlone) {
+TEST(RepeatedTypes, AreReportedWithinOneNamespaceOnly) {
   EXPECT_EQ(repeated("namespace a { struct S {}; }", "namespace b { struct S {}; }"), "");
   EXPECT_EQ(repeated("namespace a { struct S {}; }", "namespace a { namespace { struct S {}; } }"), "");
   EXPECT_EQ(repeated("namespace a { struct S {}; }", "\nnamespace a { class S {}; }"),

@@ -50,29 +50,29 @@ TEST(ModuleList, NamesUsesAndLibrariesAreRead) {
   EXPECT_EQ(small_tree().at("io").libraries, (std::set<std::string>{"itk", "vtk-io"}));
 }
 
-TEST(ModuleList, MalformedAndDoubleLinesAreTold) {
+TEST(ModuleList, ReportsMalformedAndDuplicateLines) {
   std::vector<std::string> complaints;
   parse_modules("above : :\n[low]\ncore : :\ncore : :\nvolume core\n[low]\n", complaints);
   EXPECT_EQ(complaints.size(), 4u) << joined(complaints);
 }
 
-TEST(Arrows, ReachWhatDependenciesReach) {
+TEST(Arrows, AreTransitive) {
   EXPECT_EQ(reachable(small_tree(), "io"), (std::set<std::string>{"io", "volume", "core"}));
   EXPECT_EQ(reachable(small_tree(), "core"), (std::set<std::string>{"core"}));
 }
 
-TEST(Arrows, CycleIsFound) {
+TEST(Arrows, DetectACycle) {
   EXPECT_EQ(check_arrows(small_tree()).size(), 0u);
   EXPECT_EQ(check_arrows(modules_of("[one]\na : b :\nb : c :\nc : a :\n")).size(), 3u);
   EXPECT_EQ(check_arrows(modules_of("[one]\na : a :\n")).size(), 1u);
 }
 
-TEST(Arrows, ArrowToAHigherTierIsFound) {
+TEST(Arrows, DetectAnArrowToAHigherTier) {
   EXPECT_EQ(check_arrows(modules_of("[low]\na : :\n[high]\nb : a :\n")).size(), 0u);
   EXPECT_EQ(check_arrows(modules_of("[low]\na : b :\n[high]\nb : :\n")).size(), 1u);
 }
 
-TEST(Arrows, UnlistedDependencyIsFound) {
+TEST(Arrows, DetectAnUnlistedDependency) {
   EXPECT_EQ(check_arrows(modules_of("[one]\na : b :\n")).size(), 1u);
 }
 
@@ -101,7 +101,7 @@ TEST(Includes, UpwardOrSidewardArrowIsRefused) {
   EXPECT_NE(module_verdict("src/high/io/a.cpp", "#include \"bench/harness.h\"\n"), "");
 }
 
-TEST(Includes, HeaderWithoutItsModuleIsForTestsAlone) {
+TEST(Includes, HeaderWithoutItsModuleIsForTestsOnly) {
   EXPECT_EQ(module_verdict("src/high/io/test/a_test.cpp", "#include \"make_grids.h\"\n"), "");
   EXPECT_NE(module_verdict("src/high/io/a.cpp", "#include \"make_grids.h\"\n"), "");
 }
@@ -133,7 +133,7 @@ TEST(Includes, LibraryBelongsToTheModuleThatListsIt) {
   EXPECT_NE(module_verdict("apps/cli/a.cpp", "#include <soci/soci.h>\n"), "");
 }
 
-TEST(Includes, QtBelongsToTheTrainerAlone) {
+TEST(Includes, QtIsLimitedToTheTrainer) {
   EXPECT_EQ(module_verdict("apps/trainer/views/a.cpp", "#include <QWidget>\n"), "");
   EXPECT_NE(module_verdict("apps/trainer/views/a.cpp", "#include <QVTKOpenGLNativeWidget.h>\n"), "");
   EXPECT_NE(module_verdict("apps/trainer/views/a.cpp", "#include <vtkRenderWindow.h>\n"), "");
@@ -141,7 +141,7 @@ TEST(Includes, QtBelongsToTheTrainerAlone) {
   EXPECT_NE(module_verdict("src/high/scene/a.cpp", "#include <QWidget>\n"), "");
 }
 
-TEST(Includes, FoldersOfTheTrainerAreNamedInTheTrainerOnly) {
+TEST(Includes, TrainerFoldersAreLimitedToTheTrainer) {
   EXPECT_EQ(module_verdict("apps/trainer/views/a.cpp", "#include \"shell/theme.h\"\n#include \"io/a.h\"\n"), "");
   EXPECT_NE(module_verdict("apps/cli/a.cpp", "#include \"shell/theme.h\"\n"), "");
 }
@@ -188,7 +188,7 @@ TEST_F(Repository, EveryIncludeFollowsTheModuleList) {
   EXPECT_EQ(joined(complaints), "");
 }
 
-TEST_F(Repository, EveryFolderIsAModuleAndEveryModuleAFolder) {
+TEST_F(Repository, FoldersMatchTheModuleList) {
   std::set<std::string> folders;
   for (const auto& tier : fs::directory_iterator(kTop / "src")) {
     if (!tier.is_directory()) continue;
@@ -214,13 +214,13 @@ TEST_F(Repository, EveryModuleIsDescribed) {
 }
 
 // In the locale of a Turkish user the small letter of 'I' is not 'i': a structure of that name would not be found.
-TEST_F(Repository, LettersAndDigitsDependOnNoLocale) {
+TEST_F(Repository, LetterAndDigitChecksIgnoreTheLocale) {
   for (const auto& [path, text] : source_files({"src", "apps", "bench", "tests"}))
     for (const char* word : {"tolower", "toupper", "isalnum", "isalpha", "isdigit", "isspace", "isupper", "islower"})
       EXPECT_EQ(text.find(std::string(word) + '('), std::string::npos) << path << ": use core/ascii.h for " << word;
 }
 
-TEST_F(Repository, NoFileAsksToBeSplit) {
+TEST_F(Repository, FilesStayBelowTheLineLimit) {
   for (const auto& [path, text] : source_files({"src", "apps", "bench", "tests"}))
     EXPECT_LE(count_lines(text), kMaxLines) << path;
 }

@@ -27,18 +27,18 @@ TEST(Messages, BracketsAndStringsHideCommas) {
   EXPECT_EQ(complaints_of("return fail(text(','), std::array{1, 2}[0],\n    advice(a, b));"), 0u);
 }
 
-TEST(Messages, OtherFunctionsAndTheDeclarationMayHaveFewer) {
+TEST(Messages, OtherCallsMayHaveFewerParts) {
   EXPECT_EQ(complaints_of("log_fail(\"what\"); is_fail(x); fail_unknown(x);"), 0u);
   EXPECT_EQ(complaints_of("tl::unexpected<Error> fail(std::string what, std::string where = {});"), 0u);
 }
 
-TEST(Messages, LinesAreNamed) {
+TEST(Messages, AreReportedWithTheirLines) {
   const auto complaints = check_messages("src/exchange/io/a.cpp", "\n\n  return fail(\"what\");\n");
   ASSERT_EQ(complaints.size(), 1u);
   EXPECT_TRUE(complaints.front().starts_with("src/exchange/io/a.cpp:3: ")) << complaints.front();
 }
 
-TEST(Messages, OfTheWholeProgramSayWhatToDo) {
+TEST(Messages, OfTheWholeProgramGiveAdvice) {
   std::size_t calls = 0;
   for (const auto& [path, text] : source_files({"src", "apps", "bench"})) {
     if (path.find("/test/") != std::string::npos) continue;

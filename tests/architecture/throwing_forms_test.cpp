@@ -12,7 +12,7 @@ std::size_t forms_in(std::string_view source) {
   return find_throwing_forms("src/device/server/a.cpp", source).size();
 }
 
-TEST(ThrowingForms, AreThreadsThatAreStarted) {
+TEST(ThrowingForms, IncludeStartedThreads) {
   for (const char* source :
        {"thread_ = std::thread([this] { run(); });", "std::thread(watch).detach();", "std::jthread reader([&] {});",
         "std::thread t{f};", "thread_ = std::jthread(\n    work);", "Worker() : thread_([this] { run(); }) {}",
@@ -21,14 +21,14 @@ TEST(ThrowingForms, AreThreadsThatAreStarted) {
     EXPECT_EQ(forms_in(source), 1u) << source;
 }
 
-TEST(ThrowingForms, AreIteratorsOverFolders) {
+TEST(ThrowingForms, IncludeFolderIterators) {
   for (const char* source : {"for (const auto& entry : fs::directory_iterator(folder, error)) use(entry);",
                              "fs::recursive_directory_iterator at(folder, error);\n++at;",
                              "for (std::filesystem::directory_iterator it(f, e), end; it != end; it.increment(e)) {}"})
     EXPECT_EQ(forms_in(source), 1u) << source;
 }
 
-TEST(ThrowingForms, AreNotThreadsThatAreHeldNorComments) {
+TEST(ThrowingForms, ExcludeThreadMembersAndComments) {
   for (const char* source :
        {"std::thread thread_;", "std::vector<std::jthread> threads_;", "for (std::thread& t : threads_) t.join();",
         "Result<std::thread> make(std::function<void()> body);", "std::thread::hardware_concurrency()",
@@ -38,7 +38,7 @@ TEST(ThrowingForms, AreNotThreadsThatAreHeldNorComments) {
     EXPECT_EQ(forms_in(source), 0u) << source;
 }
 
-TEST(ThrowingForms, HaveTheirLineAndTheirHome) {
+TEST(ThrowingForms, ReportLineAndAllowedModule) {
   const std::string source = "\n// a\nauto f = std::async(g);\n";
   EXPECT_EQ(find_throwing_forms("apps/a.cpp", source),
             std::vector<std::string>{"apps/a.cpp:3: start threads with core/start_thread.h"});

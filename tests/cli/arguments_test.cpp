@@ -119,7 +119,7 @@ TEST(Lists, ArePrintedAsJson) {
   EXPECT_NE(trocar("bench --list").out.find("slice"), std::string::npos);
 }
 
-TEST(Bench, SaysHowToBuildItsProgram) {
+TEST(Bench, ErrorExplainsHowToBuildItsProgram) {
   const TemporaryFolder folder;
   const Outcome copied = run_shell("cp \"$TROCAR_BIN_DIR/trocar\" '" + folder.path().string() + "'");
   ASSERT_EQ(copied.exit_status, 0) << copied.err;

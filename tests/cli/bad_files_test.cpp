@@ -26,14 +26,14 @@ class BadFiles : public ::testing::Test {
   TemporaryFolder outputs_;
 };
 
-TEST_F(BadFiles, TextIsNoImage) {
+TEST_F(BadFiles, RefusesTextAsAnImage) {
   write("ct.nii", "hello");
   expect_refused_in_one_line("patient build --ct '" + (inputs_ / "ct.nii") + "' --labels '" + (inputs_ / "ct.nii") +
                              "' --out '" + (outputs_ / "patient") + "'");
   EXPECT_TRUE(outputs_.is_empty());
 }
 
-TEST_F(BadFiles, TextIsNoSequenceAndNoCalibration) {
+TEST_F(BadFiles, RefusesTextAsSequenceOrCalibration) {
   write("sweep.igs.mha", "hello");
   write("calibration.xml", "hello");
   const std::string begin =
@@ -52,7 +52,7 @@ TEST_F(BadFiles, MissingImageIsNamed) {
   EXPECT_TRUE(outputs_.is_empty());
 }
 
-TEST_F(BadFiles, EmptyFolderIsNoPatient) {
+TEST_F(BadFiles, RefusesAnEmptyFolderAsPatient) {
   for (const std::string command : {"show", "check"})
     expect_refused_in_one_line("patient " + command + " '" + inputs_.path().string() + "'");
   expect_refused_in_one_line("patient render '" + inputs_.path().string() + "' --out '" + (outputs_ / "pictures") +
@@ -62,7 +62,7 @@ TEST_F(BadFiles, EmptyFolderIsNoPatient) {
   EXPECT_TRUE(outputs_.is_empty());
 }
 
-TEST_F(BadFiles, TextIsNoSession) {
+TEST_F(BadFiles, RefusesTextAsASession) {
   write("session", "hello");
   expect_refused_in_one_line("session export '" + (inputs_ / "session") + "' --csv '" + (outputs_ / "x.csv") + "'");
   expect_refused_in_one_line("session report '" + (inputs_ / "session") + "' --out '" + (outputs_ / "x.html") + "'");
@@ -71,7 +71,7 @@ TEST_F(BadFiles, TextIsNoSession) {
   EXPECT_TRUE(outputs_.is_empty());
 }
 
-TEST_F(BadFiles, OtherPeoplesOddImagesNeverCrashTheProgram) {
+TEST_F(BadFiles, NeverCrashOnForeignImages) {
   const fs::path folder = trocar::testing::test_data() / "bad-input";
   if (!fs::exists(folder)) GTEST_SKIP() << "no test data at " << folder;
   int tried = 0;

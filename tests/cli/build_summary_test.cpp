@@ -52,7 +52,7 @@ TEST_F(BuildSummary, HasSizeVolumesSurfacesAndTasksAsJson) {
   EXPECT_TRUE(json["doubtful"].is_array());
 }
 
-TEST_F(BuildSummary, IsPrintedForPeople) {
+TEST_F(BuildSummary, IsPrintedAsText) {
   const Outcome outcome = build("");
   ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
   for (const char* text : {"90 x 72 x 64 voxels", "liver", " ml", "body", "surfaces", "tasks", "doubtful"})
@@ -72,7 +72,7 @@ TEST_F(BuildSummary, MarksDerivedStructures) {
   EXPECT_NE(std::find(check["derived"].begin(), check["derived"].end(), "peritoneum"), check["derived"].end());
 }
 
-TEST_F(BuildSummary, DerivesOnlyWhatIsAskedFor) {
+TEST_F(BuildSummary, DerivesOnlyRequestedStructures) {
   const config::Json json = json_of(build("--derive none --json"));
   for (const config::Json& label : json["labels"]) EXPECT_NE(label["name"], "peritoneum");
   const Outcome bad = trocar("patient build --ct a --labels b --out '" + (folder_ / "bad") + "' --derive liver");
@@ -80,7 +80,7 @@ TEST_F(BuildSummary, DerivesOnlyWhatIsAskedFor) {
   EXPECT_EQ(line_count(bad.err), 1) << bad.err;
 }
 
-TEST_F(BuildSummary, DoubtfulPlacesAreDrawn) {
+TEST_F(BuildSummary, DrawsQuestionableLocations) {
   ASSERT_EQ(build("").exit_status, 0);
   const Outcome outcome = trocar("patient check '" + (folder_ / "made") + "' --pictures '" + (folder_ / "pictures") +
                                  "' --report '" + (folder_ / "check.html") + "'");
@@ -108,7 +108,7 @@ TEST_F(BuildSummary, PutsATissueTableIntoTheFolder) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "bad"));
 }
 
-TEST_F(BuildSummary, KnowsThePosture) {
+TEST_F(BuildSummary, RecordsThePosture) {
   ASSERT_EQ(build("--posture left-lateral").exit_status, 0);
   EXPECT_NE(read_text((folder_ / "made") + "/patient.toml").find("left-lateral"), std::string::npos);
   const Outcome bad = trocar("patient build --ct a --labels b --out '" + (folder_ / "bad") + "' --posture standing");

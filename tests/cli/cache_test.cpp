@@ -8,7 +8,7 @@ namespace trocar::cli_test {
 namespace {
 namespace fs = std::filesystem;
 
-TEST(Cache, GivesTheSameSessionAsAGeneratedPatient) {
+TEST(Cache, CachedPatientGivesTheSameSession) {
   const TemporaryFolder folder;
   const std::string cached = "XDG_CACHE_HOME='" + (folder / "cache") + "'";
   const auto run = [&](const std::string& name, const std::string& more) {

@@ -45,7 +45,7 @@ TEST(Completion, OffersCommandsAndSubCommands) {
   EXPECT_EQ(completions("completion ba"), Offered{"bash"});
 }
 
-TEST(Completion, OffersTheOptionsOfTheCommandAlone) {
+TEST(Completion, OffersOnlyTheOptionsOfTheCommand) {
   EXPECT_TRUE(offers(completions("patient build --"), "--labels"));
   EXPECT_FALSE(offers(completions("patient build --"), "--operator"));
   EXPECT_TRUE(offers(completions("run --patient abdomen --"), "--operator"));
@@ -59,13 +59,13 @@ TEST(Completion, OffersNamesOfThisProgram) {
   EXPECT_EQ(completions("ultrasound image --view gall"), Offered{"gallbladder"});
 }
 
-TEST(Completion, OffersNoWordWhereAFileOrANumberIsDue) {
+TEST(Completion, OffersNothingForFilesAndNumbers) {
   EXPECT_TRUE(completions("run --out ''").empty());
   EXPECT_TRUE(completions("run --seed ''").empty());
 }
 
 /// Every long option of every help text is offered.
-TEST(Completion, KnowsEveryOptionOfTheHelp) {
+TEST(Completion, OffersEveryOptionOfTheHelp) {
   for (const std::string command : {"patient build", "plan", "run", "session report", "ultrasound image",
                                     "ultrasound sweep", "ultrasound reconstruct", "bench"}) {
     const Offered offered = completions(command + " --");

@@ -27,7 +27,7 @@ void seal_session(const std::string& file, const std::string& state_folder) {
   ASSERT_TRUE(sealed) << sealed.error().text();
 }
 
-TEST(Exam, ASignedResultIsVerifiedHereAndElsewhere) {
+TEST(Exam, VerifiesASignedResultOnAnyStation) {
   const TemporaryFolder folder;
   const std::string session = folder / "a.trocar", result = folder / "a.result.json";
   const std::string state = " --state '" + folder / "state" + "'";
@@ -61,7 +61,7 @@ TEST(Exam, ASignedResultIsVerifiedHereAndElsewhere) {
   EXPECT_EQ(line_count(changed.err), 1);
 }
 
-TEST(Exam, RefusesWhatCannotBeAnExam) {
+TEST(Exam, RefusesNonExamSessions) {
   const TemporaryFolder folder;
   write_exam(folder / "guided.trocar", "guided");
   const std::string state = " --state '" + folder / "state" + "'";
@@ -74,7 +74,7 @@ TEST(Exam, RefusesWhatCannotBeAnExam) {
   EXPECT_NE(practised.err.find("whole number from 2 to 999999"), std::string::npos) << practised.err;
 }
 
-TEST(Exam, WhatCannotBeVerifiedHasNoVerdict) {
+TEST(Exam, GivesNoVerdictIfNotVerifiable) {
   const TemporaryFolder folder;
   const std::string session = folder / "a.trocar";
   const std::string state = " --state '" + folder / "state" + "'";
@@ -117,7 +117,7 @@ TEST(Exam, ADamagedSessionIsNotSigned) {
   expect_refused(trocar("exam key --state /proc/nothing"), 1, "/proc/nothing");
 }
 
-TEST(Exam, ASessionWithoutASealOrChangedSinceIsNotSigned) {
+TEST(Exam, RefusesToSignAnUnsealedOrChangedSession) {
   const TemporaryFolder folder;
   const std::string session = folder / "a.trocar", state = " --state '" + folder / "state" + "'";
   write_exam(session);
@@ -133,7 +133,7 @@ TEST(Exam, ASessionWithoutASealOrChangedSinceIsNotSigned) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a.result.json"));
 }
 
-TEST(Exam, MissingFoldersOfSessionsAreNotTakenForEmptyOnes) {
+TEST(Exam, RefusesMissingSessionFolders) {
   const TemporaryFolder folder;
   const std::string none = " --sessions '" + folder / "none" + "'";
   expect_refused(trocar("exam draw liver-biopsy" + none), 2, "no such folder");

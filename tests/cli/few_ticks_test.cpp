@@ -27,7 +27,7 @@ class FewTicks : public ::testing::TestWithParam<std::size_t> {
   std::string short_ = folder_ / "short.session";
 };
 
-TEST_P(FewTicks, HaveMetricsWithAReasonForEachMissingOne) {
+TEST_P(FewTicks, HaveMetricsOrReasons) {
   const Outcome outcome = trocar("session metrics '" + short_ + "' --json");
   ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
   const config::Json json = json_of(outcome);
@@ -53,7 +53,7 @@ TEST_P(FewTicks, HaveAReport) {
     EXPECT_EQ(text.find(none), std::string::npos) << none;
 }
 
-TEST_P(FewTicks, AreExportedAndReplayedOrRefusedInOneLine) {
+TEST_P(FewTicks, AreExportedAndReplayedOrRefused) {
   const std::string csv = folder_ / "short.csv";
   EXPECT_EQ(trocar("session export '" + short_ + "' --csv '" + csv + "'").exit_status, 0);
   EXPECT_EQ(line_count(read_text(csv)), static_cast<int>(GetParam()) + 1);

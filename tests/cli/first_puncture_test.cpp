@@ -40,7 +40,7 @@ class FirstPuncture : public ::testing::Test {
   static inline std::string run_json_;
 };
 
-TEST_F(FirstPuncture, ShowTellsVolumesMeshesAndFrames) {
+TEST_F(FirstPuncture, ShowPrintsVolumesMeshesAndFrames) {
   const config::Json json = json_of(trocar("patient show '" + patient_ + "' --json"));
   double liver_ml = 0.0;
   for (const config::Json& label : json["labels"]) {
@@ -53,7 +53,7 @@ TEST_F(FirstPuncture, ShowTellsVolumesMeshesAndFrames) {
   EXPECT_FALSE(json["provenance"].empty());
 }
 
-TEST_F(FirstPuncture, CheckSaysThatABiopsyIsPossible) {
+TEST_F(FirstPuncture, CheckReportsThatABiopsyIsPossible) {
   const config::Json json = json_of(trocar("patient check '" + patient_ + "' --json"));
   bool is_possible = false;
   for (const config::Json& task : json["tasks"])
@@ -76,7 +76,7 @@ TEST_F(FirstPuncture, PlanWritesAMarkupsFile) {
   EXPECT_TRUE(config::parse_json(read(file), file));
 }
 
-TEST_F(FirstPuncture, ExpertPuncturesSkinMuscleAndCapsuleOnceEachInThisOrder) {
+TEST_F(FirstPuncture, ExpertPuncturesEachLayerOnceInOrder) {
   const std::string csv = *folder_ / "expert.csv";
   ASSERT_EQ(trocar("session export '" + session_ + "' --csv '" + csv + "'").exit_status, 0);
   std::istringstream rows(read(csv));
@@ -95,7 +95,7 @@ TEST_F(FirstPuncture, ExpertPuncturesSkinMuscleAndCapsuleOnceEachInThisOrder) {
   EXPECT_GT(count, 1000);
 }
 
-TEST_F(FirstPuncture, ReportIsOneSelfContainedPage) {
+TEST_F(FirstPuncture, ReportIsSelfContained) {
   const std::string html = *folder_ / "expert.html";
   const Outcome outcome = trocar("session report '" + session_ + "' --out '" + html + "'");
   ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
@@ -137,7 +137,7 @@ TEST_F(FirstPuncture, ReplayRepeatsTheRecording) {
   EXPECT_TRUE(read(again_csv) == first) << "another bit";
 }
 
-TEST_F(FirstPuncture, RenderWithoutAScreenWritesSlicesAndSaysWhatIsMissing) {
+TEST_F(FirstPuncture, RenderWithoutAScreenWritesOnlySlices) {
   const fs::path pictures = *folder_ / "slices";
   const Outcome outcome =
       trocar("patient render '" + patient_ + "' --out '" + pictures.string() + "'", "env -u DISPLAY");
@@ -155,7 +155,7 @@ TEST_F(FirstPuncture, RenderWithAScreenDrawsEveryView) {
   EXPECT_EQ(std::distance(fs::directory_iterator(pictures), fs::directory_iterator()), 10);
 }
 
-TEST_F(FirstPuncture, TakesALongerNeedleThroughAThickWallUnlessOneIsChosen) {
+TEST_F(FirstPuncture, SelectsALongerNeedleForAThickWall) {
   const auto needle_of = [](const std::string& options) {
     const TemporaryFolder folder;
     const std::string line = "run ascites-puncture --patient ascites-5 --operator expert --json --out '";

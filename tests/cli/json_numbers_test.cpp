@@ -9,7 +9,7 @@
 namespace trocar::cli_test {
 namespace {
 
-TEST(JsonNumbers, HaveNoDigitsOfTheArithmetic) {
+TEST(JsonNumbers, HaveNoRoundingDigits) {
   const TemporaryFolder folder;
   const std::string session = folder / "a.trocar";
   const Outcome ran =

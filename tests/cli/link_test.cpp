@@ -10,7 +10,7 @@ namespace trocar::cli_test {
 namespace {
 namespace fs = std::filesystem;
 
-TEST(LinkKeygen, MakesAFolderOfKeysForTheUserAlone) {
+TEST(LinkKeygen, CreatesAPrivateKeyFolder) {
   const TemporaryFolder folder;
   const Outcome outcome = trocar("link keygen --out '" + (folder / "keys") + "'");
   EXPECT_EQ(outcome.exit_status, 0) << outcome.err;

@@ -71,7 +71,7 @@ class Numbers : public ::testing::TestWithParam<Command> {
   const TemporaryFolder folder_;
 };
 
-TEST_P(Numbers, OutsideOfTheirRangeAreRefusedInOneLine) {
+TEST_P(Numbers, AreRefusedOutOfRangeInOneLine) {
   const Outcome help = run_program(command_.program, std::string(command_.name) + " --help");
   const std::vector<std::string> options = numeric_options(help.out);
   for (const std::string& option : options)
@@ -81,7 +81,7 @@ TEST_P(Numbers, OutsideOfTheirRangeAreRefusedInOneLine) {
   EXPECT_TRUE(folder_.is_empty());
 }
 
-TEST_P(Numbers, HaveTheirRangeInTheHelp) {
+TEST_P(Numbers, AreDocumentedWithTheirRange) {
   const Outcome help = run_program(GetParam().program, std::string(GetParam().name) + " --help");
   const std::regex unrestricted(R"(--\S+ (FLOAT|INT|UINT)\b)");
   EXPECT_FALSE(std::regex_search(help.out, unrestricted)) << help.out;
@@ -89,12 +89,12 @@ TEST_P(Numbers, HaveTheirRangeInTheHelp) {
 
 INSTANTIATE_TEST_SUITE_P(OfEveryCommand, Numbers, ::testing::ValuesIn(kCommands));
 
-TEST(NumericOptions, AreFoundInTheHelp) {
+TEST(NumericOptions, AreListedInTheHelp) {
   EXPECT_GE(numeric_options(trocar("ultrasound image --help").out).size(), 20u);
   EXPECT_GE(numeric_options(trocar("run --help").out).size(), 3u);
 }
 
-TEST(NumericOptions, ZeroIsNotLeftOut) {
+TEST(NumericOptions, AcceptZero) {
   for (const char* line : {"ultrasound sweep --patient abdomen --view aorta --out x.nrrd --angle-deg 0",
                            "ultrasound sweep --patient abdomen --view aorta --tracked x.igs.mha --frames 0",
                            "ultrasound image --patient abdomen --view aorta --out x.png --frames 0",
@@ -112,7 +112,7 @@ TEST(NumericOptions, LeadingZerosAreDecimal) {
   EXPECT_NE(outcome.err.find("odd"), std::string::npos) << outcome.err;
 }
 
-TEST(StandardOutput, ThatCannotBeWrittenIsAnError) {
+TEST(StandardOutput, FailsIfUnwritable) {
   for (const char* line : {"device list", "device list --json", "task list", "patient list", "ultrasound views",
                            "ultrasound transducers", "bench --list", "--help", "--version", "run --help"}) {
     const Outcome outcome = trocar(std::string(line) + " >/dev/full");
@@ -123,7 +123,7 @@ TEST(StandardOutput, ThatCannotBeWrittenIsAnError) {
   EXPECT_EQ(run_program("trocar-hapticd", "--help >/dev/full").exit_status, 1);
 }
 
-TEST(BenchList, IsJsonWhereAsked) {
+TEST(BenchList, PrintsJsonOnRequest) {
   const config::Json json = json_of(trocar("bench --list --json"));
   ASSERT_FALSE(json["benchmarks"].empty());
   EXPECT_EQ(json["benchmarks"][0]["name"], "slice");

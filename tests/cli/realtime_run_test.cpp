@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRun = "run liver-biopsy --patient abdomen --operator constant-velocity:60 --realtime ";
 
-TEST(RealtimeRun, StartsTwoServersOfItsOwnAndTellsHowTheyDid) {
+TEST(RealtimeRun, StartsTwoServersAndReportsTheirFigures) {
   const TemporaryFolder folder;
   const config::Json json = json_of(trocar(kRun + ("--json --out '" + (folder / "live.session") + "'")));
   EXPECT_EQ(json["target_reached"], true);
@@ -38,7 +38,7 @@ TEST(RealtimeRun, StartsTwoServersOfItsOwnAndTellsHowTheyDid) {
   EXPECT_EQ(session->samples.size(), json["ticks"].get<std::size_t>());
 }
 
-TEST(RealtimeRun, SaysWhereNoServerAnswers) {
+TEST(RealtimeRun, ReportsAServerThatDoesNotAnswer) {
   const TemporaryFolder folder;
   const Outcome outcome = trocar(kRun + ("--patience 0.2 --endpoint 'ipc://" + (folder / "nobody") + "' --out '" +
                                          (folder / "live.session") + "'"));
@@ -48,7 +48,7 @@ TEST(RealtimeRun, SaysWhereNoServerAnswers) {
   EXPECT_FALSE(fs::exists(folder / "live.session"));
 }
 
-TEST(RealtimeRun, RefusesWhatMakesNoSenseAsUsage) {
+TEST(RealtimeRun, RefusesContradictoryOptionsAsUsageErrors) {
   const TemporaryFolder folder;
   const std::string out = " --out '" + (folder / "live.session") + "'";
   const std::string in_process = "run liver-biopsy --patient abdomen --operator expert ";

@@ -40,7 +40,7 @@ bool exists(const std::string& path) {
   return std::filesystem::exists(path);
 }
 
-TEST(Register, WritesTransformPictureAndFigures) {
+TEST(Register, WritesTransformImageAndFigures) {
   const TemporaryFolder folder;
   const testing::GeneratedPair pair = write_pair(folder, 10.0, 10.0 * std::numbers::pi / 180.0);
   const config::Json json = json_of(

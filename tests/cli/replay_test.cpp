@@ -54,7 +54,7 @@ TEST_F(ReplayCommand, RestoresAllFromTheSession) {
     EXPECT_NEAR(again["punctures"][n]["peak_n"].get<double>(), recorded_["punctures"][n]["peak_n"].get<double>(), 1e-6);
 }
 
-TEST_F(ReplayCommand, RefusesWhatContradictsTheSession) {
+TEST_F(ReplayCommand, RefusesOptionsThatContradictTheSession) {
   for (const std::string contradiction :
        {"--seed 7", "--patient-seed 9", "--device premium", "--rate 1000", "--needle nobody", "lumbar",
         "--patient layers-ascites", "--patient-seed 9 --patient layers-liver"}) {
@@ -69,7 +69,7 @@ TEST_F(ReplayCommand, RefusesWhatContradictsTheSession) {
       << "what is the same is no contradiction";
 }
 
-TEST_F(ReplayCommand, GoesIntoAnotherPatientOnlyWhenThatIsMeant) {
+TEST_F(ReplayCommand, ReplaysIntoAnotherPatientOnlyOnRequest) {
   const Outcome meant = replay("--other-patient --patient-seed 4", "other.session");
   const config::Json other = json_of(meant);
   EXPECT_NE(other["patient_hash"], recorded_["patient_hash"]);
@@ -79,7 +79,7 @@ TEST_F(ReplayCommand, GoesIntoAnotherPatientOnlyWhenThatIsMeant) {
   EXPECT_EQ(pointless.exit_status, 2);
 }
 
-TEST_F(ReplayCommand, SaysWhenTissuesAreChangedOnPurpose) {
+TEST_F(ReplayCommand, WarnsOfDeliberatelyChangedTissues) {
   const Outcome outcome = replay("--set skin.fp=5", "stiffer.session");
   const config::Json stiffer = json_of(outcome);
   EXPECT_NE(outcome.err.find("warning: "), std::string::npos) << outcome.err;
@@ -87,7 +87,7 @@ TEST_F(ReplayCommand, SaysWhenTissuesAreChangedOnPurpose) {
   EXPECT_NEAR(recorded_["punctures"][0]["peak_n"].get<double>(), 4.0, 0.04);
 }
 
-TEST_F(ReplayCommand, NamesTheNumbersThatWereSetInCsvAndReport) {
+TEST_F(ReplayCommand, ListsSetNumbersInCsvAndReport) {
   const std::string csv = *folder_ / "first.csv", html = *folder_ / "first.html";
   ASSERT_EQ(trocar("session export '" + session_ + "' --csv '" + csv + "'").exit_status, 0);
   ASSERT_EQ(trocar("session report '" + session_ + "' --out '" + html + "'").exit_status, 0);
@@ -95,7 +95,7 @@ TEST_F(ReplayCommand, NamesTheNumbersThatWereSetInCsvAndReport) {
   EXPECT_NE(read_text(html).find("skin.fp=4"), std::string::npos);
 }
 
-TEST_F(ReplayCommand, SaysThatTheTicksAreTheSameToTheBit) {
+TEST_F(ReplayCommand, ReportsBitwiseEqualTicks) {
   const config::Json same = json_of(replay("", "bits.session"));
   EXPECT_EQ(same["ticks_hash"], recorded_["ticks_hash"]);
   EXPECT_EQ(same["ticks_hash"].get<std::string>().size(), 32u);
@@ -116,7 +116,7 @@ void write_with_forces(int version, const std::string& from, const std::string& 
   ASSERT_TRUE(writer->finish(*session->outcome, session->shots));
 }
 
-TEST_F(ReplayCommand, SaysThatTheForcesAreOfAnotherVersion) {
+TEST_F(ReplayCommand, ReportsAnotherForceVersion) {
   const std::string older = *folder_ / "older.session", newer = *folder_ / "newer.session";
   ASSERT_NO_FATAL_FAILURE(write_with_forces(1, session_, older));
   ASSERT_NO_FATAL_FAILURE(write_with_forces(haptics::kForceVersion + 1, session_, newer));
@@ -186,7 +186,7 @@ Position shown_position(const std::string& file) {
   return first == std::string::npos ? Position{} : position_in(text.substr(first), "state\t", '\t');
 }
 
-TEST_F(ReplayCommand, ServerReplaysASessionAndItsMotionAlike) {
+TEST_F(ReplayCommand, ServerReplaysSessionAndMotionFilesAlike) {
   const std::string csv = *folder_ / "motion.csv";
   ASSERT_EQ(trocar("session motion '" + session_ + "' --csv '" + csv + "'").exit_status, 0);
   const std::string text = read_text(csv);
@@ -197,7 +197,7 @@ TEST_F(ReplayCommand, ServerReplaysASessionAndItsMotionAlike) {
   EXPECT_LT(distance_mm(shown_position(session_), first), kMoved_mm);
 }
 
-TEST_F(ReplayCommand, ServerSaysInOneLineWhyAFileIsNoMotion) {
+TEST_F(ReplayCommand, ServerRefusesANonMotionFileInOneLine) {
   std::ofstream(*folder_ / "damaged.session") << read_text(session_).substr(0, 30'000);
   std::ofstream(*folder_ / "text.csv") << "time,x\n0,1\n";
   for (const char* file : {"damaged.session", "text.csv", "none.csv"}) {
@@ -208,7 +208,7 @@ TEST_F(ReplayCommand, ServerSaysInOneLineWhyAFileIsNoMotion) {
   }
 }
 
-TEST(Seeds, OfTheOperatorDoNotChangeTheAnatomy) {
+TEST(Seeds, OperatorSeedDoesNotChangeTheAnatomy) {
   const TemporaryFolder folder;
   const auto run = [&](const std::string& arguments, const std::string& out) {
     return json_of(trocar("run liver-biopsy --patient layers-liver --operator novice --json --out '" + (folder / out) +

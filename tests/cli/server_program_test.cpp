@@ -35,7 +35,7 @@ TEST(ServerProgram, ContainsNoCodeOfItsClients) {
     EXPECT_FALSE(contains(symbols, code)) << code;
 }
 
-TEST(ServerProgram, ABrokenSavedWeightIsOneLineAndCanBeForgotten) {
+TEST(ServerProgram, ReportsAMalformedSavedWeightAndCanForgetIt) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "trocar/styluses/virtual%3Aomni.toml";
   std::filesystem::create_directories(file.parent_path());

@@ -51,7 +51,7 @@ class SessionMetrics : public ::testing::Test {
   static inline std::string session_;
 };
 
-TEST_F(SessionMetrics, ExpertsBiopsyIsOnItsPath) {
+TEST_F(SessionMetrics, ExpertBiopsyFollowsItsPath) {
   auto metrics = metrics_of("'" + session_ + "'");
   EXPECT_LT(value_of(metrics, "target_distance"), 3.0);
   EXPECT_LT(value_of(metrics, "path_distance_max"), 3.0);
@@ -64,7 +64,7 @@ TEST_F(SessionMetrics, ExpertsBiopsyIsOnItsPath) {
   for (const auto& [name, metric] : metrics) EXPECT_NE(metric["value"].is_null(), !metric.contains("missing")) << name;
 }
 
-TEST_F(SessionMetrics, TheExportedSessionHasTheSameMetrics) {
+TEST_F(SessionMetrics, ExportKeepsTheMetrics) {
   const std::string csv = *folder_ / "expert.csv";
   ASSERT_EQ(trocar("session export '" + session_ + "' --csv '" + csv + "'").exit_status, 0);
   auto wanted = metrics_of("'" + session_ + "'");
@@ -76,7 +76,7 @@ TEST_F(SessionMetrics, TheExportedSessionHasTheSameMetrics) {
   EXPECT_EQ(metrics["plane_angle"]["missing"], "the recording has no transducer");
 }
 
-TEST_F(SessionMetrics, PosesOfAnotherSystemAgainstExpertPaths) {
+TEST_F(SessionMetrics, ComparesForeignPosesWithExpertPaths) {
   // 60 mm along +z at 20 mm/s, 3 mm beside one path and 20 mm beside the other; in metres, without depth.
   std::string rows = "time_s,tip_x_m,tip_y_m,tip_z_m,axis_x,axis_y,axis_z\n";
   for (int n = 0; n <= 300; ++n) rows += fmt::format("{},0.003,0,{},0,0,1\n", 0.01 * n, 0.0002 * n);
@@ -98,7 +98,7 @@ TEST_F(SessionMetrics, PosesOfAnotherSystemAgainstExpertPaths) {
   EXPECT_NE(text.out.find("no patient was given"), std::string::npos) << text.out;
 }
 
-TEST_F(SessionMetrics, NeedleInTheImagePlaneOfARecordedTransducer) {
+TEST_F(SessionMetrics, MeasuresNeedleAgainstTheRecordedImagePlane) {
   // Straight down from the face of a C5-2 to 60 mm; for the last 15 mm the plane is 20 mm beside the needle.
   std::string rows =
       "time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,depth_mm,probe_x_mm,probe_y_mm,probe_z_mm,probe_qw,"
@@ -117,7 +117,7 @@ TEST_F(SessionMetrics, NeedleInTheImagePlaneOfARecordedTransducer) {
   EXPECT_EQ(value_of(metrics, "skin_contacts"), 1.0);
 }
 
-TEST_F(SessionMetrics, BadInputIsOneClearLine) {
+TEST_F(SessionMetrics, ReportsBadInputInOneLine) {
   const std::string header = "time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z\n";
   const std::string good = write("good.csv", header + "0,0,0,0,0,0,1\n");
   expect_refused("'" + (*folder_ / "none.csv") + "'", "none.csv");

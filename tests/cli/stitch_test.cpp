@@ -80,7 +80,7 @@ TEST(Stitch, NamesAnUnconnectedVolume) {
   EXPECT_FALSE(fs::exists(files.folder / "none"));
 }
 
-TEST(Stitch, RefusesWhatCannotBeStitched) {
+TEST(Stitch, RefusesUnusableVolumes) {
   const Files files;
   volume::GridGeometry small;
   small.size = {24, 24, 24};

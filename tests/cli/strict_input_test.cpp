@@ -66,7 +66,7 @@ std::vector<Case> cases() {
   };
 }
 
-TEST(StrictInput, IsRefusedInOneLineThatNamesFileAndPlace) {
+TEST(StrictInput, IsRefusedWithFileAndLocation) {
   const TemporaryFolder folder;
   const std::string database = folder / "results.sqlite";
   ASSERT_EQ(trocar("results --db '" + database + "' add Anna").exit_status, 0);

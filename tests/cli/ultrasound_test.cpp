@@ -52,7 +52,7 @@ TEST(UltrasoundImage, IsTheSameForTheSameSeed) {
   EXPECT_NE(text_of_file(folder / "a.png"), text_of_file(folder / "c.png"));
 }
 
-TEST(UltrasoundImage, NrrdLiesInThePatientInThePlaneOfTheTransducer) {
+TEST(UltrasoundImage, NrrdLiesInTheTransducerPlane) {
   const TemporaryFolder folder;
   const std::string pose = place_on_scene(folder);
   const config::Json json = json_of(trocar("ultrasound image" + kScene + kQuick + " --pose " + pose +
@@ -84,7 +84,7 @@ TEST(UltrasoundImage, TimesFramesOfEngineAndScanner) {
   }
 }
 
-TEST(UltrasoundImage, NeedleAndSwitchedArtefactsChangeThePicture) {
+TEST(UltrasoundImage, NeedleAndArtefactSwitchesChangeTheImage) {
   const TemporaryFolder folder;
   const std::string needle = folder / "needle.tfm";
   ASSERT_TRUE(io::write_transform(needle_pose({0.0, 40.0, 0.0}, Vec3(0.0, 0.5, -0.8).normalized()), needle));
@@ -140,7 +140,7 @@ TEST(UltrasoundImage, PanoramaOfThePatientFolderIsShown) {
   EXPECT_GT(volume::correlation(a->voxels, b->voxels, volume::ComparedVoxels::kBothAboveZero), 0.4);
 }
 
-TEST(UltrasoundImage, FarFromThePanoramaTheImageIsTheRayCastOne) {
+TEST(UltrasoundImage, ShowsTheRayCastImageFarFromThePanorama) {
   const TemporaryFolder folder;
   const std::string patient = make_patient_with_panorama(folder);
   std::filesystem::remove(patient + "/us_to_ct.tfm");
@@ -154,7 +154,7 @@ TEST(UltrasoundImage, FarFromThePanoramaTheImageIsTheRayCastOne) {
   EXPECT_EQ(text_of_file(folder / "a.png"), text_of_file(folder / "b.png"));
 }
 
-TEST(UltrasoundImage, DamagedPanoramaIsOneLine) {
+TEST(UltrasoundImage, ReportsADamagedPanoramaInOneLine) {
   const TemporaryFolder folder;
   const std::string patient = make_patient_with_panorama(folder);
   const std::string line = "ultrasound image" + kQuick + " --engine panorama --patient " + patient + " --pose " +
@@ -215,7 +215,7 @@ TEST(UltrasoundImage, SavedPoseKeepsHarmonicImaging) {
   EXPECT_EQ(plain["harmonic"], false) << "an option counts more than the file";
 }
 
-TEST(UltrasoundImage, PictureBeyondTheCtIsWarnedOf) {
+TEST(UltrasoundImage, WarnsOfAnImageBeyondTheCt) {
   const TemporaryFolder folder;
   const Outcome outcome =
       trocar("ultrasound image" + kScene + " --lines 32 --samples 128 --planes 1 --looks 1" +
@@ -224,7 +224,7 @@ TEST(UltrasoundImage, PictureBeyondTheCtIsWarnedOf) {
   EXPECT_NE(outcome.err.find("outside the CT"), std::string::npos) << outcome.err;
 }
 
-TEST(UltrasoundImage, FaceBesideTheBodyIsWarnedOf) {
+TEST(UltrasoundImage, WarnsOfAFaceOutsideTheBody) {
   const TemporaryFolder folder;
   const Outcome outcome = trocar("ultrasound image" + kScene + kQuick + " --pose " +
                                  place_on_scene(folder, {0.0, -400.0, 0.0}) + " --out " + (folder / "air.png"));
@@ -232,7 +232,7 @@ TEST(UltrasoundImage, FaceBesideTheBodyIsWarnedOf) {
   EXPECT_NE(outcome.err.find("the transducer does not touch the skin"), std::string::npos) << outcome.err;
 }
 
-TEST(UltrasoundSweep, VolumeOfTheMotorAndOfAHandAgreeInThePatient) {
+TEST(UltrasoundSweep, MotorAndFreehandVolumesAgree) {
   const TemporaryFolder folder;
   const std::string common = " --pose " + place_on_scene(folder) + kScene + kQuick +
                              " --transducer 4DC7-3 --angle-deg 40 --step-deg 1 --frequency-mhz 3";
@@ -255,7 +255,7 @@ TEST(UltrasoundSweep, VolumeOfTheMotorAndOfAHandAgreeInThePatient) {
   EXPECT_GT(volume::correlation(motor->voxels, resampled, volume::ComparedVoxels::kBothAboveZero), 0.8);
 }
 
-TEST(UltrasoundSweep, VolumeOfAScannerStandsInItsOwnFrameAndCarriesItsFan) {
+TEST(UltrasoundSweep, ScannerVolumeHasItsOwnFrameAndFan) {
   const TemporaryFolder folder;
   const config::Json json = json_of(trocar("ultrasound sweep" + kScene + kQuick +
                                            " --angle-deg 20 --step-deg 2 --spacing 1.5 --json --pose " +
@@ -302,7 +302,7 @@ struct Refused {
 
 class UltrasoundMistake : public ::testing::TestWithParam<Refused> {};
 
-TEST_P(UltrasoundMistake, SaysOneLineAndWritesNothing) {
+TEST_P(UltrasoundMistake, FailsInOneLineAndWritesNothing) {
   const TemporaryFolder folder;
   place_on_scene(folder);  // pose8.tfm
   std::ofstream(folder / "scaled.tfm") << "#Insight Transform File V1.0\n#Transform 0\nTransform: "

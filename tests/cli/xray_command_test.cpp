@@ -123,14 +123,14 @@ Vec3 place_in(const Outcome& outcome, const std::string& name) {
   return {std::stod(found[1]), std::stod(found[2]), std::stod(found[3])};
 }
 
-TEST_F(XrayCommand, LooksAtTheTargetOfThePatientsTask) {
+TEST_F(XrayCommand, CentresOnTheTargetOfThePatientsTask) {
   const Outcome outcome = xray("--json", "x.png");
   ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
   const Vec3 target_P = place_in(trocar("patient show '" + patient() + "' --json"), "target_mm");
   EXPECT_NEAR((place_in(outcome, "isocentre_mm") - target_P).norm(), 0.0, 1e-6);
 }
 
-TEST_F(XrayCommand, LooksAtTheCentreOfABodyWithoutATask) {
+TEST_F(XrayCommand, CentresOnTheBodyWithoutATask) {
   // A body of 60 x 40 x 100 mm in air, off the middle of the scan and cut off by its end.
   volume::GridGeometry geometry;
   geometry.size = {50, 40, 60};
@@ -169,7 +169,7 @@ TEST_F(XrayCommand, NrrdLiesAtTheDetector) {
   EXPECT_LT(at(image, 48, 48), 8.0F);
 }
 
-TEST_F(XrayCommand, RightAnteriorObliqueAndCranialMoveTheDetectorThere) {
+TEST_F(XrayCommand, RaoAndCranialAnglesMoveTheDetector) {
   const auto middle_P = [&](const std::string& angles, const std::string& out) -> Vec3 {
     return attenuation("--at 0,0,0 --carm " + angles, out).geometry.centre_mm({48, 48, 0});
   };
@@ -201,7 +201,7 @@ TEST_F(XrayCommand, JsonNamesGeometryExposureAndContrast) {
 }
 
 /// A needle from the patient's right, whose tip is in the middle of the image.
-TEST_F(XrayCommand, NeedleIsDarkFromTheRightUpToItsTip) {
+TEST_F(XrayCommand, NeedleIsDarkUpToItsTip) {
   Mat3 R_PN;
   R_PN << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // +z of the needle towards the patient's left
   const std::string line = "--field 110 --at " + kDuct + " ";
@@ -246,7 +246,7 @@ TEST_F(XrayCommand, SubtractionShowsTheContrastAgentOnly) {
   EXPECT_NE(read_text(folder_ / "live.png"), read_text(folder_ / "subtracted.png"));
 }
 
-TEST_F(XrayCommand, DicomRunPassesDciodvfyAndHasTheTimesOfTheContrastAgent) {
+TEST_F(XrayCommand, DicomRunPassesDciodvfyWithFrameTimes) {
   const Outcome outcome = xray("--contrast 3@" + kDuct + " --frames 4", "run.dcm");
   ASSERT_EQ(outcome.exit_status, 0) << outcome.err;
   if (!has_dicom3tools()) GTEST_SKIP() << "dicom3tools is not installed";

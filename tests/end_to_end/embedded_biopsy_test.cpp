@@ -43,7 +43,7 @@ class EmbeddedBiopsy : public ::testing::Test {
   static inline Attempt* expert = nullptr;
 };
 
-TEST_F(EmbeddedBiopsy, ExpertFeelsThreePeaksAndReachesTheLesion) {
+TEST_F(EmbeddedBiopsy, ExpertMeetsThreePeaksAndReachesTheLesion) {
   expect_three_peaks(*expert);
   EXPECT_TRUE(expert->result.outcome.target_reached);
   EXPECT_GT(expert->result.outcome.score, 85.0);
@@ -80,7 +80,7 @@ TEST_F(EmbeddedBiopsy, RecordsTheForceLawsOwnValues) {
   EXPECT_GT(loaded, 300u);
 }
 
-TEST_F(EmbeddedBiopsy, EveryForceModelLeadsTheExpertToTheLesion) {
+TEST_F(EmbeddedBiopsy, ExpertReachesTheLesionWithEveryForceModel) {
   using Layers = std::vector<std::string>;
   const std::vector<std::pair<std::string, Layers>> models{
       {"proxy", {"skin", "liver_capsule"}}, {"combined", {"skin", "liver_capsule"}}};  // muscle: from the CT
@@ -244,7 +244,7 @@ TEST_F(EmbeddedBiopsy, AnInterruptionOrAFullDiskLeavesNothing) {
   }
 }
 
-TEST_F(EmbeddedBiopsy, AKilledAttemptIsKeptAsIncompleteAndTheRetryWorks) {
+TEST_F(EmbeddedBiopsy, KeepsAKilledAttemptAsIncompleteAndAllowsARetry) {
   const TemporaryFolder folder;
   const std::filesystem::path session = folder / "a.session";
   EXPECT_EQ(run_in_child(*the_case, session, 3, [] { ::kill(::getpid(), SIGKILL); }), 128 + SIGKILL);

@@ -48,7 +48,7 @@ TEST(Experts, PassTheirTasksOnAllEmbeddedPatients) {
 }
 
 // In these the planned end lies so near to the wall that the wall has not given way there.
-TEST(Experts, PressOnThroughTheWallOfTheTarget) {
+TEST(Experts, PressThroughTheWallOfTheTarget) {
   expect_passes("ascites-3", "lumbar-puncture");
   expect_passes("biopsy-1", "ptcd");
 }

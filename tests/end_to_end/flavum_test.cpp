@@ -24,7 +24,7 @@ std::optional<double> to_dura_s(const Attempt& attempt) {
   return *dura - *flavum;
 }
 
-TEST(BehindTheFlavum, AnExpertStopsAndANovicePiercesTheDuraAtOnce) {
+TEST(BehindTheFlavum, ExpertStopsAndNovicePiercesTheDura) {
   auto patient = io::open_patient({"lumbar-1", 1, io::patient_cache_folder()});
   ASSERT_TRUE(patient) << patient.error().text();
   cases::CaseOptions options;

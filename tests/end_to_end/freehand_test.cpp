@@ -31,7 +31,7 @@ Result<SpinePhantom> load_spine_phantom(const fs::path& folder) {
   return phantom;
 }
 
-TEST(RealFreehand, SpinePhantomIsAsPlusReconstructsIt) {
+TEST(RealFreehand, SpinePhantomMatchesPlus) {
   const fs::path folder = test_data() / "us-spine-phantom";
   if (!fs::exists(folder)) GTEST_SKIP() << "no test data at " << folder;
   const auto phantom = load_spine_phantom(folder);
@@ -47,7 +47,7 @@ TEST(RealFreehand, SpinePhantomIsAsPlusReconstructsIt) {
             0.998);
 }
 
-TEST(RealFreehand, SpinePhantomWithoutItsCalibrationSaysWhatIsMissing) {
+TEST(RealFreehand, SpinePhantomWithoutCalibrationIsRefused) {
   const fs::path folder = test_data() / "us-spine-phantom";
   if (!fs::exists(folder)) GTEST_SKIP() << "no test data at " << folder;
   const auto sequence = io::read_sequence(folder / "SpinePhantomFreehand.igs.mha");
@@ -57,7 +57,7 @@ TEST(RealFreehand, SpinePhantomWithoutItsCalibrationSaysWhatIsMissing) {
   EXPECT_NE(volume.error().what.find("no transform from Image to Reference"), std::string::npos);
 }
 
-TEST(RealFreehand, LiverSweepBringsItsOwnPlaces) {
+TEST(RealFreehand, LiverSweepUsesItsRecordedPoses) {
   const fs::path path = test_data() / "us-liver-sweep" / "liver_sweep_decoded.igs.mha";
   if (!fs::exists(path)) GTEST_SKIP() << "no test data at " << path;
   const auto sequence = io::read_sequence(path);

@@ -187,7 +187,7 @@ TEST_F(Invariance, DicomSlicesGiveOnePatient) {
   expect_equal(outcome_of(ct, *folder / "labels.dcm", *folder / "map.toml"));
 }
 
-TEST_F(Invariance, AnObliqueVolumeGivesThePatientWithinInterpolation) {
+TEST_F(Invariance, ObliqueVolumeMatchesWithinInterpolation) {
   // The scan turned by 15 degrees about an oblique axis, on a grid of 2 mm that holds it.
   volume::GridGeometry oblique;
   oblique.R_PV = Eigen::AngleAxisd(15.0 * M_PI / 180.0, Vec3(1, 2, 3).normalized()).toRotationMatrix();

@@ -43,7 +43,7 @@ TEST(RealCt, TorsoWithoutLesionGivesAParenchymalBiopsy) {
   EXPECT_TRUE(prepared && prepared->is_parenchymal);
 }
 
-TEST(RealCt, LiverWithTumoursFromDicomMasks) {
+TEST(RealCt, BuildsALiverWithTumoursFromDicomMasks) {
   const fs::path archive = test_data() / "ct-liver" / "3dircadb1.17_dicom_and_masks.tar.xz";
   if (!fs::exists(archive)) GTEST_SKIP() << "no test data at " << archive;
   const TemporaryFolder folder;

@@ -79,7 +79,7 @@ class RealtimeSession : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(RealtimeSession, ExpertThroughTwoServersDoesWhatItDoesInProcess) {
+TEST_F(RealtimeSession, ExpertThroughTwoServersMatchesInProcess) {
   const Attempt in_process = perform(*the_case, "expert");
   const LiveServer needle(*the_case, "needle", folder_);
   const LiveServer probe(*the_case, "probe", folder_);
@@ -111,7 +111,7 @@ TEST_F(RealtimeSession, ExpertThroughTwoServersDoesWhatItDoesInProcess) {
   for (const attempt::ServerFigures& server : live->servers) EXPECT_GT(server.ticks_received, 0u) << server.tool;
 }
 
-TEST_F(RealtimeSession, GoesOnWhereTheNeedleWasWhenItsServerComesBack) {
+TEST_F(RealtimeSession, ResumesAtTheNeedlePoseAfterAServerRestart) {
   LiveServer needle(*the_case, "needle", folder_);
   const auto live = perform_live(kQuickOperator, {needle.url()}, kLong, once_after(1.0, [&] {
                                    needle.end();
@@ -134,7 +134,7 @@ TEST_F(RealtimeSession, GoesOnWhereTheNeedleWasWhenItsServerComesBack) {
 }
 
 /// The hand of an operator that feels is soft: without forces it would let the stylus sag out of the needle's channel.
-TEST_F(RealtimeSession, TheExpertsNeedleStaysInItsChannelWhileTheServerIsAway) {
+TEST_F(RealtimeSession, NeedleStaysInItsChannelDuringAServerOutage) {
   const Attempt in_process = perform(*the_case, "expert");
   const auto& samples = in_process.session.samples;
   const auto is_deep = [](const auto& sample) { return sample.depth_mm > 25.0; };
@@ -152,7 +152,7 @@ TEST_F(RealtimeSession, TheExpertsNeedleStaysInItsChannelWhileTheServerIsAway) {
   EXPECT_NEAR(live->outcome.score, in_process.result.outcome.score, kPoints);
 }
 
-TEST_F(RealtimeSession, GoesOnWithoutTheProbeWhenItsServerIsGone) {
+TEST_F(RealtimeSession, ContinuesWithoutTheProbeServer) {
   const LiveServer needle(*the_case, "needle", folder_);
   LiveServer probe(*the_case, "probe", folder_);
   const auto live =
@@ -165,7 +165,7 @@ TEST_F(RealtimeSession, GoesOnWithoutTheProbeWhenItsServerIsGone) {
   })) << fmt::format("{}", fmt::join(live->warnings, "; "));
 }
 
-TEST_F(RealtimeSession, KeepsWhatWasRecordedWhenTheNeedlesServerStaysAway) {
+TEST_F(RealtimeSession, KeepsTheRecordingWhenTheNeedleServerStaysLost) {
   LiveServer needle(*the_case, "needle", folder_);
   const auto live = perform_live(kQuickOperator, {needle.url()}, kMedium, once_after(1.0, [&] { needle.end(); }));
   ASSERT_FALSE(live.has_value());
@@ -177,7 +177,7 @@ TEST_F(RealtimeSession, KeepsWhatWasRecordedWhenTheNeedlesServerStaysAway) {
   EXPECT_GT(session.samples.back().time_s, 0.9);
 }
 
-TEST_F(RealtimeSession, SaysThatNoServerAnswersAndWritesNothing) {
+TEST_F(RealtimeSession, ReportsAMissingServerAndWritesNothing) {
   const auto live = perform_live(kQuickOperator, {"ipc://" + (folder_ / "nobody").string()}, milliseconds(100));
   ASSERT_FALSE(live.has_value());
   EXPECT_EQ(live.error().exit_status, 1);
@@ -185,7 +185,7 @@ TEST_F(RealtimeSession, SaysThatNoServerAnswersAndWritesNothing) {
   EXPECT_FALSE(has_session());
 }
 
-TEST_F(RealtimeSession, WantsAServerOfTheNeedle) {
+TEST_F(RealtimeSession, RequiresANeedleServer) {
   const LiveServer probe(*the_case, "probe", folder_);
   const auto live = perform_live(kQuickOperator, {probe.url()}, kLong);
   ASSERT_FALSE(live.has_value());

@@ -72,7 +72,7 @@ Result<SweptPatient> sweep_gallbladder() {
   return swept;
 }
 
-TEST(SimulatedFreehand, ShowsTheGallbladderWhereThePatientHasIt) {
+TEST(SimulatedFreehand, ShowsTheGallbladderAtItsPosition) {
   const auto swept = sweep_gallbladder();
   ASSERT_TRUE(swept) << swept.error().text();
   const std::string pattern = "gallbladder";

@@ -66,7 +66,7 @@ std::string report_of(const cases::Case& the_case, const char* operator_name) {
   return report::html_report(attempt.session, the_case.patient.get(), story);
 }
 
-TEST(Languages, HaveWordsForEveryReport) {
+TEST(Languages, TranslateEveryReport) {
   const std::vector<language::Language> languages = other_languages();
   ASSERT_FALSE(languages.empty());
   std::vector<Lacking> lacking(languages.begin(), languages.end());
@@ -93,7 +93,7 @@ TEST(Languages, HaveWordsForEveryReport) {
     EXPECT_EQ(lacking[n].count(), 0u) << languages[n].code() << " lacks:\n" << lacking[n].lines();
 }
 
-TEST(Languages, HaveWordsForEveryTask) {
+TEST(Languages, TranslateEveryTask) {
   const auto tasks = tasks::load_tasks(data_dir() / "tasks");
   ASSERT_TRUE(tasks) << tasks.error().text();
   const auto tutorial = tasks::load_task_file(data_dir() / "tutorial" / "first-puncture.toml", data_dir() / "tasks");

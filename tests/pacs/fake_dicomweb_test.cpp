@@ -101,7 +101,7 @@ TEST_F(FromFakeServer, CompressedContentIsRead) {
   expect_fetched({lists(2), answers(chunked(kMultipart, packed, 1000, "Content-Encoding: gzip\r\n"))});
 }
 
-TEST_F(FromFakeServer, StatusIsExplained) {
+TEST_F(FromFakeServer, ExplainsTheHttpStatus) {
   const auto status = [](const std::string& line) {
     return std::vector<FakeServer::Serve>{answers("HTTP/1.1 " + line + "\r\nContent-Length: 5\r\n\r\noops\n")};
   };
@@ -140,13 +140,13 @@ TEST_F(FromFakeServer, PasswordFileIsRead) {
   EXPECT_EQ(missing.exit_status, 2) << missing.err;
 }
 
-TEST_F(FromFakeServer, NoServerIsNamed) {
+TEST_F(FromFakeServer, NamesAServerThatDoesNotAnswer) {
   const Outcome outcome = cli_test::trocar(arguments(free_port()));
   EXPECT_EQ(outcome.exit_status, 1);
   EXPECT_NE(outcome.err.find("cannot connect to the server"), std::string::npos) << outcome.err;
 }
 
-TEST_F(FromFakeServer, OtherBytesAreRefused) {
+TEST_F(FromFakeServer, RefusesNonHttpBytes) {
   expect_refused({answers("")}, "closed the connection");
   expect_refused({answers(std::string(5000, '\xff'))}, "no HTTP");
   expect_refused({answers("HTTP/1.1 200")}, "no HTTP");
@@ -172,7 +172,7 @@ TEST_F(FromFakeServer, EndlessHeadersAreRefused) {
   expect_refused(pour("", std::string(10'000, 'x')), "endless header");
 }
 
-TEST_F(FromFakeServer, SilenceEndsAfterTheTimeLimit) {
+TEST_F(FromFakeServer, TimesOutOnSilence) {
   const std::string message = "sent nothing for 1 s";
   expect_refused({wait_for_close}, message, 1);
   const std::string whole = answer(kMultipart, two_);
@@ -197,7 +197,7 @@ TEST_F(FromFakeServer, ContentThatEndsEarlyIsRefused) {
                  "closed the connection in the middle");
 }
 
-TEST_F(FromFakeServer, PartsThatAreNoDicomAreRefused) {
+TEST_F(FromFakeServer, RefusesNonDicomParts) {
   expect_refused({lists(1), answers(answer(kMultipart, dicom_part("<html>") + "--frontier--"))}, "not DICOM");
   expect_refused({lists(1), answers(answer(kMultipart, dicom_part("") + "--frontier--"))}, "not DICOM");
   expect_refused(

@@ -45,13 +45,13 @@ TEST_F(FromFakePacs, RejectionNamesTheReason) {
   expect_refused(reject(1, 1, 1), "refuses the association");
 }
 
-TEST_F(FromFakePacs, NoPacsIsNamed) {
+TEST_F(FromFakePacs, NamesAPacsThatDoesNotAnswer) {
   const Outcome outcome = cli_test::trocar(arguments(free_port()));
   EXPECT_EQ(outcome.exit_status, 1);
   EXPECT_NE(outcome.err.find("cannot connect to the PACS"), std::string::npos) << outcome.err;
 }
 
-TEST_F(FromFakePacs, OtherBytesThanAnAnswerAreRefused) {
+TEST_F(FromFakePacs, RefusesNonDimseBytes) {
   const auto answer = [](const std::string& bytes) {
     return std::vector<FakeServer::Serve>{[=](int socket) {
       receive_pdu(socket);
@@ -66,7 +66,7 @@ TEST_F(FromFakePacs, OtherBytesThanAnAnswerAreRefused) {
                  "does not answer as a PACS");
 }
 
-TEST_F(FromFakePacs, SilenceEndsAfterTheTimeLimit) {
+TEST_F(FromFakePacs, TimesOutOnSilence) {
   const std::string message = "sent nothing for 1 s";
   expect_refused({wait_for_close}, message, kImpatient_s);
   expect_get_refused([](int socket, int, int) { wait_for_close(socket); }, message, 2, kImpatient_s);
@@ -84,7 +84,7 @@ TEST_F(FromFakePacs, SilenceEndsAfterTheTimeLimit) {
       "the PACS", 2, kImpatient_s);
 }
 
-TEST_F(FromFakePacs, ClosingInTheMiddleIsNamed) {
+TEST_F(FromFakePacs, ReportsAClosedConnection) {
   expect_get_refused(
       [](int socket, int, int ct) {
         send_object(socket, ct, made::made_ct(0).bytes());
@@ -101,7 +101,7 @@ TEST_F(FromFakePacs, ClosingInTheMiddleIsNamed) {
                      "ended the retrieval early");
 }
 
-TEST_F(FromFakePacs, EndWithoutAnAnswerNamesTheAeTitle) {
+TEST_F(FromFakePacs, EndWithoutAnswerNamesTheAeTitle) {
   const std::string message = "without an answer: it may not know our AE title TROCAR";
   const auto abort = [](int socket) { send_all(socket, pdu(7, std::string(4, '\0'))); };
   expect_get_refused([](int, int, int) {}, message);
@@ -158,7 +158,7 @@ TEST_F(FromFakePacs, EndlessListIsRefused) {
                  "more than 10000 answers");
 }
 
-TEST_F(FromFakePacs, ObjectsThatAreNoneAreRefused) {
+TEST_F(FromFakePacs, RefusesMalformedObjects) {
   expect_get_refused([](int socket, int, int ct) { send_object(socket, ct, "<html>this is no DICOM object</html>"); },
                      "damaged");
   expect_get_refused([](int socket, int, int ct) { send_object(socket, ct, std::string(50'000, '\xff')); }, "damaged");
@@ -183,7 +183,7 @@ TEST_F(FromFakePacs, MissingObjectsAreCounted) {
   expect_get_refused([](int socket, int request, int) { end_get(socket, request, 0xa702); }, "status A702");
 }
 
-TEST_F(FromFakePacs, MoreObjectsThanAnnouncedAreKeptWithAWarning) {
+TEST_F(FromFakePacs, KeepsExtraObjectsWithAWarning) {
   const FakeServer server({lists_series(1), answers_get([](int socket, int request, int ct) {
                              for (int slice = 0; slice < 4; ++slice)
                                send_object(socket, ct, made::made_ct(slice).bytes());
@@ -194,7 +194,7 @@ TEST_F(FromFakePacs, MoreObjectsThanAnnouncedAreKeptWithAWarning) {
   EXPECT_NE(outcome.err.find("announced 1 image and sent 4"), std::string::npos) << outcome.err;
 }
 
-TEST_F(FromFakePacs, NamesOfThePacsAreNoPaths) {
+TEST_F(FromFakePacs, DoesNotUsePacsNamesAsPaths) {
   expect_refused({lists_series(1, "CT", "../../../../tmp/x")}, "no such study");
   const FakeServer server({lists_series(1, "../../A/B"), answers_get([](int socket, int request, int ct) {
                              made::MadeObject object = made::made_ct(0);
@@ -207,7 +207,7 @@ TEST_F(FromFakePacs, NamesOfThePacsAreNoPaths) {
   EXPECT_TRUE(fs::exists(folder_.path() / "a" / "series_001_AB" / "00001.dcm"));
 }
 
-TEST_F(FromFakePacs, ReportsAreLeftOut) {
+TEST_F(FromFakePacs, SkipsReports) {
   const FakeServer server({lists_series(1), answers_get([](int socket, int request, int ct) {
                              made::MadeObject object = made::made_ct(0);
                              send_object(socket, ct,
@@ -252,7 +252,7 @@ class Listening : public FromFakePacs {
   const int port_ = free_port();
 };
 
-TEST_F(Listening, StrangersDoNotDisturb) {
+TEST_F(Listening, IgnoresForeignConnections) {
   const Outcome outcome = fetch([this](int socket, int request) {
     ::close(connect_to(port_));
     const int garbage = connect_to(port_);
@@ -298,7 +298,7 @@ TEST_F(Listening, UsedPortIsNamed) {
       << outcome.err;
 }
 
-TEST_F(FromFakePacs, TextsThatAreReplacedAreCountedAndNotShown) {
+TEST_F(FromFakePacs, CountsReplacedTextsWithoutShowingThem) {
   const FakeServer server({lists_series(2), sends_two_slices()});
   const Outcome outcome = cli_test::trocar(arguments(server.port()));
   EXPECT_EQ(outcome.exit_status, 0) << outcome.err;
@@ -306,7 +306,7 @@ TEST_F(FromFakePacs, TextsThatAreReplacedAreCountedAndNotShown) {
   EXPECT_EQ(outcome.err.find("MUSTERMANN"), std::string::npos) << outcome.err;
 }
 
-TEST_F(FromFakePacs, MissingListOfWordsIsNamedBeforeAnythingIsFetched) {
+TEST_F(FromFakePacs, NamesAMissingWordListBeforeFetching) {
   const cli_test::TemporaryFolder data;
   const Outcome outcome = cli_test::trocar(arguments(free_port()), "TROCAR_DATA_DIR='" + data.path().string() + "'");
   EXPECT_EQ(outcome.exit_status, 1);

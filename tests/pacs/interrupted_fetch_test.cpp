@@ -34,7 +34,7 @@ class Interrupted : public FromFakePacs {
   cli_test::TemporaryFolder pid_;
 };
 
-TEST_F(Interrupted, ProgramLeavesNothing) {
+TEST_F(Interrupted, FetchLeavesNothing) {
   const Outcome outcome = run_with_signal("TERM");  // a shell's job in the background ignores INT
   EXPECT_EQ(outcome.exit_status, 1) << outcome.err;
   EXPECT_NE(outcome.err.find("interrupted: nothing was written"), std::string::npos) << outcome.err;
@@ -56,7 +56,7 @@ TEST_F(Interrupted, KilledProgramLeavesNoIdentity) {
   EXPECT_EQ(files, 1) << "the first object, anonymised, in the temporary folder";
 }
 
-TEST_F(Interrupted, NextFetchToTheSamePlaceRemovesWhatAKilledOneLeft) {
+TEST_F(Interrupted, NextFetchRemovesTheRestOfAKilledOne) {
   EXPECT_NE(run_with_signal("KILL").exit_status, 0);
   ASSERT_FALSE(folder_.is_empty());
   const FakeServer server({lists_series(2), sends_two_slices()});
@@ -67,7 +67,7 @@ TEST_F(Interrupted, NextFetchToTheSamePlaceRemovesWhatAKilledOneLeft) {
   EXPECT_TRUE(fs::exists(folder_.path() / "a" / "series_001_CT" / "00002.dcm"));
 }
 
-TEST_F(Interrupted, NextFetchLeavesARunningOneAlone) {
+TEST_F(Interrupted, NextFetchKeepsARunningOne) {
   const FakeServer other({lists_series(2), sends_two_slices()});
   Outcome second;
   const FakeServer server({lists_series(2), answers_get([&](int socket, int request, int ct) {

@@ -98,7 +98,7 @@ void expect_no_identity(const fs::path& folder) {
   }
 }
 
-TEST_F(FromOrthanc, AllWaysGiveTheSameAnonymisedFiles) {
+TEST_F(FromOrthanc, AllProtocolsGiveTheSameAnonymisedFiles) {
   std::vector<std::string> texts;
   for (std::size_t n = 0; n < 3; ++n) {
     const std::string folder = out(std::to_string(n));
@@ -152,7 +152,7 @@ TEST_F(FromOrthanc, CtIsReadAsAVolume) {
     ASSERT_EQ(ct->voxels[n], made::made_hu(static_cast<int>(n / pixels), static_cast<int>(n % pixels))) << n;
 }
 
-TEST_F(FromOrthanc, FilesAreInTheOrderOfTheirNumbers) {
+TEST_F(FromOrthanc, NumbersFilesInOrder) {
   ASSERT_EQ(fetch(orthanc_->pacs(), "--series 1 --out '" + out("a") + "'").exit_status, 0);
   int number = 0;
   for (const fs::path& path : files_below(out("a"))) {
@@ -178,7 +178,7 @@ TEST_F(FromOrthanc, IdentityIsKeptOnRequestWithAWarning) {
   }
 }
 
-TEST_F(FromOrthanc, SeriesAreListedAlike) {
+TEST_F(FromOrthanc, ListsSeriesAlikeOverAllProtocols) {
   std::vector<std::string> lists;
   for (const std::string& way : ways()) {
     const auto list = json_of(fetch(way, "--list --json"));
@@ -211,7 +211,7 @@ TEST_F(FromOrthanc, SummaryIsJson) {
   EXPECT_EQ(json.dump().find("99999"), std::string::npos) << "no UID of the hospital";
 }
 
-TEST_F(FromOrthanc, WrongArgumentsAreRefusedBeforeAnythingIsWritten) {
+TEST_F(FromOrthanc, RefusesWrongArgumentsBeforeWriting) {
   const std::string place = " --out '" + out("a") + "'";
   struct Case {
     std::string arguments;
@@ -241,7 +241,7 @@ TEST_F(FromOrthanc, WrongArgumentsAreRefusedBeforeAnythingIsWritten) {
   }
 }
 
-TEST_F(FromOrthanc, RefusalSaysWhatThePacsHasToKnow) {
+TEST_F(FromOrthanc, RefusalNamesTheRequiredPacsSettings) {
   std::string other = orthanc_->pacs();
   other.replace(other.find("ORTHANC"), 7, "OTHER");
   const Outcome wrong_title = fetch(other, "--out '" + out("a") + "'");
@@ -257,7 +257,7 @@ TEST_F(FromOrthanc, RefusalSaysWhatThePacsHasToKnow) {
   EXPECT_TRUE(folder_.is_empty());
 }
 
-TEST_F(FromOrthanc, StrangersAreToldOfTheirAeTitle) {
+TEST_F(FromOrthanc, RefusalOfAnUnknownClientNamesItsAeTitle) {
   const Orthanc strict(false);
   ASSERT_TRUE(strict.is_running());
   for (const char* via : {"", " --via get"}) {

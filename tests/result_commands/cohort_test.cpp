@@ -14,7 +14,7 @@ Outcome cohort(const std::string& arguments) {
   return run_shell("'" + (testing::source_dir() / "scripts/cohort").string() + "' " + arguments);
 }
 
-TEST(Cohort, IsPlayedImportedAndJudgedAsSimulated) {
+TEST(Cohort, IsSimulatedImportedAndMarkedAsSimulated) {
   const TemporaryFolder folder;
   const std::string group = "'" + folder / "people" + "' --experts 1 --novices 1 --sessions 2 --expert-sessions 1" +
                             " --case liver-biopsy:layers-liver";
@@ -64,7 +64,7 @@ TEST(Cohort, IsPlayedImportedAndJudgedAsSimulated) {
   }
 }
 
-TEST(Cohort, ReportsAttemptsThatCannotBePlayed) {
+TEST(Cohort, ReportsAttemptsThatCannotRun) {
   const TemporaryFolder folder;
   const Outcome outcome =
       cohort("'" + folder / "people" + "' --experts 0 --novices 1 --sessions 1 --case liver-biopsy:nobody");
@@ -74,7 +74,7 @@ TEST(Cohort, ReportsAttemptsThatCannotBePlayed) {
   EXPECT_EQ(cohort("'" + folder / "other" + "' --expert-share 2").exit_status, 2);
 }
 
-TEST(ResultsEvidence, RefusesWhatItCannotAnswer) {
+TEST(ResultsEvidence, RefusesUnanswerableQuestions) {
   const TemporaryFolder folder;
   const std::string database = "'" + folder / "results.sqlite" + "'";
   expect_refused(trocar("results --db " + database + " validity --task liver-biopsy"), 1, "no such database");

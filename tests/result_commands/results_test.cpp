@@ -68,7 +68,7 @@ TEST_F(Results, OptionsThatContradictAPersonAreRefused) {
     EXPECT_EQ(results("import " + file("a.session") + " --person 'Anna Meier' " + option).exit_status, 0) << option;
 }
 
-TEST_F(Results, SayWhatWasCountedAndWhatWasLeftOut) {
+TEST_F(Results, ReportCountedAndExcludedAttempts) {
   add_anna();
   std::string files;
   const auto write = [&](const std::string& name, const ShortSession& session) {
@@ -102,7 +102,7 @@ TEST_F(Results, SayWhatWasCountedAndWhatWasLeftOut) {
   EXPECT_NE(results("import " + file("a.csv")).out.find("0 attempts added, 5 were there already"), std::string::npos);
 }
 
-TEST_F(Results, OfOtherFilesAreImportedBesideAWrongOne) {
+TEST_F(Results, ImportGoodFilesBesideABadOne) {
   add_anna();
   write_session(folder_ / "a.session", {.score = 91.0});
   ASSERT_EQ(results("import " + file("a.session") + " --person 'Anna Meier'").exit_status, 0);
@@ -116,7 +116,7 @@ TEST_F(Results, OfOtherFilesAreImportedBesideAWrongOne) {
   EXPECT_NE(both.err.find("1 of 2 files were not imported"), std::string::npos) << both.err;
 }
 
-TEST_F(Results, DeleteAPersonOnlyWithYes) {
+TEST_F(Results, DeleteAPersonOnlyAfterConfirmation) {
   add_anna();
   write_session(folder_ / "a.session", {});
   ASSERT_EQ(results("import " + file("a.session") + " --person 'Anna Meier'").exit_status, 0);
@@ -148,7 +148,7 @@ TEST_F(Results, RefuseBadInputInOneLine) {
   EXPECT_FALSE(fs::exists(folder_ / "x.session"));
 }
 
-TEST_F(Results, OfARunAreRecordedForItsPerson) {
+TEST_F(Results, RecordARunForItsPerson) {
   add_anna();
   const std::string run =
       "run liver-biopsy --patient abdomen --operator constant-velocity:60 --out " + file("run.session");
@@ -161,7 +161,7 @@ TEST_F(Results, OfARunAreRecordedForItsPerson) {
   EXPECT_EQ(json["attempts"][0]["state"], "finished");
 }
 
-TEST_F(Results, OfAKilledStationAreThereWithAllThatItRecorded) {
+TEST_F(Results, KeepAllTicksOfAKilledStation) {
   const char* programs = std::getenv("TROCAR_BIN_DIR");
   ASSERT_NE(programs, nullptr) << "run the test through ctest";
   add_anna();

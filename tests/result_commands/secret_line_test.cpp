@@ -77,7 +77,7 @@ class OnTerminal {
   std::string shown_;
 };
 
-TEST(SecretLine, IsNotShownAndTheTerminalIsAsBefore) {
+TEST(SecretLine, IsHiddenAndRestoresTheTerminal) {
   const TemporaryFolder folder;
   OnTerminal program({"serve", "account", "add", "Eva", "--db", folder / "a.sqlite"});
   ASSERT_TRUE(program.wait_for("characters): "));
@@ -90,7 +90,7 @@ TEST(SecretLine, IsNotShownAndTheTerminalIsAsBefore) {
   EXPECT_TRUE(program.shows_typing());
 }
 
-TEST(SecretLine, LeavesTheTerminalAsBeforeAfterASignal) {
+TEST(SecretLine, RestoresTheTerminalAfterASignal) {
   const TemporaryFolder folder;
   ASSERT_EQ(trocar("results --db '" + (folder / "a.sqlite") + "' add Anna").exit_status, 0);
   const std::vector<std::vector<std::string>> commands{{"serve", "account", "add", "Eva", "--db", folder / "a.sqlite"},

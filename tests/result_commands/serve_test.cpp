@@ -40,7 +40,7 @@ TEST(Serve, AccountsAreAddedChangedAndRemoved) {
   EXPECT_EQ(read_text(folder / "results.sqlite").find("otters"), std::string::npos) << "only a hash is stored";
 }
 
-TEST(Serve, RefusesWhatCannotBeServed) {
+TEST(Serve, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const std::string db = " --db '" + folder / "results.sqlite" + "'";
   expect_refused(trocar("serve --listen 0.0.0.0:0" + db), 2, "without encryption");

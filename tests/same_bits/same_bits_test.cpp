@@ -72,7 +72,7 @@ std::map<std::string, std::string> read_reference() {
   return hashes;
 }
 
-TEST(SameBits, InEveryBuild) {
+TEST(SameBits, MatchTheReferenceInEveryBuild) {
   if (std::getenv("TROCAR_WRITE_REFERENCE") != nullptr) {
     std::string text = fmt::format("math {}\n", math_library());
     for (const Scenario& scenario : kScenarios) text += fmt::format("{} {}\n", scenario.name, hash_of(scenario));
@@ -85,7 +85,7 @@ TEST(SameBits, InEveryBuild) {
   for (const Scenario& scenario : kScenarios) EXPECT_EQ(hash_of(scenario), reference[scenario.name]) << scenario.name;
 }
 
-TEST(SameBits, WithAndWithoutWideVectors) {
+TEST(SameBits, AreEqualWithAndWithoutWideVectors) {
   for (const Scenario& scenario : kScenarios) {
     const std::string wide = hash_of(scenario);
     const volume::testing::BaselineSimd baseline;

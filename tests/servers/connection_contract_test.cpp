@@ -105,7 +105,7 @@ TYPED_TEST(ConnectionContract, WelcomesTheFirstClientWithControl) {
   EXPECT_FALSE(this->ask(*second, ServerCommand::kStart).is_done);
 }
 
-TYPED_TEST(ConnectionContract, LetsAWatcherStopTheForces) {
+TYPED_TEST(ConnectionContract, AllowsAWatcherToStopTheForces) {
   const auto connection = this->connect();
   const auto watcher = this->connect(false);
   ASSERT_TRUE(this->ask(*connection, this->scene()).is_done);
@@ -164,7 +164,7 @@ TYPED_TEST(ConnectionContract, SwitchesTheForcesOffWhenItsControllerLeaves) {
   EXPECT_TRUE(this->rig.wait([&] { return watcher->view().status.gate_mode == telemetry::GateMode::kOff; }));
 }
 
-TYPED_TEST(ConnectionContract, IsSilentAfterItsEndAndAnotherSessionAfterItsReturn) {
+TYPED_TEST(ConnectionContract, StartsANewSessionAfterARestart) {
   const auto connection = this->connect();
   const std::uint64_t session = connection->view().welcome.session;
   ASSERT_TRUE(this->ask(*connection, this->scene()).is_done);

@@ -76,7 +76,7 @@ TEST_F(DeviceAttemptTest, AGamepadPushesTheNeedleInAndRumbles) {
   EXPECT_TRUE(wait_phase(attempt::AttemptPhase::kInBody)) << where();
 }
 
-TEST_F(DeviceAttemptTest, AnUnpluggedGamepadIsToldAndThePunctureGoesOnWhenItIsBack) {
+TEST_F(DeviceAttemptTest, ContinuesWhenAnUnpluggedGamepadReturns) {
   GamepadStandIn pad;
   start("gamepad");
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
@@ -101,7 +101,7 @@ TEST_F(DeviceAttemptTest, AnUnpluggedGamepadIsToldAndThePunctureGoesOnWhenItIsBa
   EXPECT_TRUE(wait_deeper(depth_mm + 5.0)) << where();
 }
 
-TEST_F(DeviceAttemptTest, SaysInOneLineThatNoGamepadIsThere) {
+TEST_F(DeviceAttemptTest, ReportsAMissingGamepadInOneLine) {
   const GamepadStandIn unplugged(false);
   start("gamepad");
   const Error error = failure();
@@ -109,7 +109,7 @@ TEST_F(DeviceAttemptTest, SaysInOneLineThatNoGamepadIsThere) {
   EXPECT_NE(error.advice.find("connect or pair one"), std::string::npos) << error.advice;
 }
 
-TEST_F(DeviceAttemptTest, ASpaceMousePushesTheNeedleInAndMayBeUnplugged) {
+TEST_F(DeviceAttemptTest, SpaceMousePushesTheNeedleInAndMayBeUnplugged) {
   SpacenavDaemon daemon;
   start("spacemouse");
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
@@ -134,7 +134,7 @@ TEST_F(DeviceAttemptTest, ASpaceMousePushesTheNeedleInAndMayBeUnplugged) {
   EXPECT_TRUE(push_until(-200, is_deeper(18.0))) << where();
 }
 
-TEST_F(DeviceAttemptTest, SaysInOneLineThatNoSpaceMouseIsThere) {
+TEST_F(DeviceAttemptTest, ReportsAMissingSpaceMouseInOneLine) {
   ::setenv("SPNAV_SOCKET", (folder_ / "nobody").c_str(), 1);
   start("spacemouse");
   EXPECT_EQ(failure().what, "spacenavd does not respond");

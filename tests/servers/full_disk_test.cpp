@@ -27,7 +27,7 @@ class FullDisk {
   rlimit before_{};
 };
 
-TEST_F(LiveAttemptTest, ADiskThatIsFullAtOnceLosesNoScoreAndSaysWhatTheFileLacks) {
+TEST_F(LiveAttemptTest, FullDiskKeepsTheScoreAndReportsTheLoss) {
   start(options());
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->perform(expert());

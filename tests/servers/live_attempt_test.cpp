@@ -59,7 +59,7 @@ TEST_F(LiveAttemptTest, ExpertReachesTheTarget) {
   EXPECT_EQ(std::count_if(events.begin(), events.end(), is_capsule), 1);
 }
 
-TEST_F(LiveAttemptTest, GoesOnWhereItWasWhenTheNeedlesServerIsKilled) {
+TEST_F(LiveAttemptTest, ResumesAfterTheNeedleServerIsKilled) {
   open = abdomen_case();
   start(options());
   ASSERT_TRUE(wait_phase(attempt::AttemptPhase::kReady)) << where();
@@ -88,7 +88,7 @@ TEST_F(LiveAttemptTest, GoesOnWhereItWasWhenTheNeedlesServerIsKilled) {
   EXPECT_FALSE(result.warnings.empty());
 }
 
-TEST_F(LiveAttemptTest, NextAttemptTakesTheServersOver) {
+TEST_F(LiveAttemptTest, NextAttemptReusesTheServers) {
   attempt::AttemptOptions waiting = options();
   waiting.waits_for_begin = true;
   start(waiting);
@@ -109,7 +109,7 @@ TEST_F(LiveAttemptTest, NextAttemptTakesTheServersOver) {
   EXPECT_TRUE(storage::load_session(next.session));
 }
 
-TEST_F(LiveAttemptTest, SaysWhyItCannotStart) {
+TEST_F(LiveAttemptTest, ReportsWhyItCannotStart) {
   attempt::AttemptOptions wrong = options();
   wrong.device_needle = "virtual:nobody";
   start(wrong);

@@ -74,7 +74,7 @@ TEST(Holder, DISABLED_HoldsTheServerUntilItIsKilled) {
   for (;; std::this_thread::sleep_for(std::chrono::milliseconds(5))) keep_pressing(client, 0.7, depth_mm);
 }
 
-TEST(Liveness, ForceIsGoneInTimeWhenTheClientIsKilled) {
+TEST(Liveness, ForceFadesInTimeWhenTheClientIsKilled) {
   LiveServer server;
   link::ServerProcess holder = start_holder(server.url());
   link::HapticClient watcher = connect(server.url(), false);
@@ -86,7 +86,7 @@ TEST(Liveness, ForceIsGoneInTimeWhenTheClientIsKilled) {
   EXPECT_LE(fade.ended_s - fade.began_s, 0.2 + 0.05);
 }
 
-TEST(Liveness, ForceFadesWhileTheClientIsStoppedAndComesBackSmoothly) {
+TEST(Liveness, ForceFadesWhileTheClientIsSuspended) {
   LiveServer server;
   link::ServerProcess holder = start_holder(server.url());
   link::HapticClient watcher = connect(server.url(), false);
@@ -111,7 +111,7 @@ TEST(Liveness, ForceFadesWhileTheClientIsStoppedAndComesBackSmoothly) {
   EXPECT_LT(largest_rise_n, 0.1) << "N in one tick";
 }
 
-TEST(Liveness, AClientSeesAKilledServerAndItsSuccessor) {
+TEST(Liveness, ClientDetectsAKilledServerAndItsSuccessor) {
   LiveServer server;
   link::HapticClient client = connect(server.url());
   press_on_skin(client);
@@ -125,7 +125,7 @@ TEST(Liveness, AClientSeesAKilledServerAndItsSuccessor) {
   press_on_skin(client);
 }
 
-TEST(Liveness, AServerThatWasStoppedHasAFaultUntilItIsReset) {
+TEST(Liveness, SuspendedServerHasAFaultUntilReset) {
   LiveServer server;
   link::HapticClient client = connect(server.url());
   press_on_skin(client);
@@ -147,7 +147,7 @@ TEST(Liveness, AServerThatWasStoppedHasAFaultUntilItIsReset) {
   }));
 }
 
-TEST(Liveness, AFlightRecordTellsOfAFault) {
+TEST(Liveness, WritesAFlightRecordOfAFault) {
   LiveServer server({"--fault", "nan@0.1"});
   link::HapticClient client = connect(server.url());
   ASSERT_TRUE(client.ask(layers_scene(), kPatience));
@@ -176,7 +176,7 @@ TEST(Liveness, AnUnpluggedDeviceIsOpenedAgainOnRequest) {
   EXPECT_TRUE(wait_for([&] { return client.view().status.state == link::ServerState::kRunning; }));
 }
 
-TEST(Liveness, EndsOnRequestWithItsFiguresAndExitStatusZero) {
+TEST(Liveness, EndsOnSigtermWithExitStatusZero) {
   LiveServer server;
   {
     link::HapticClient client = connect(server.url());

@@ -62,7 +62,7 @@ class ProcessStalls : public LiveAttemptTest {
   int pid = 0;
 };
 
-TEST_F(ProcessStalls, AStoppedServerIsWaitedFor) {
+TEST_F(ProcessStalls, WaitForASuspendedServer) {
   start_inside();
   ::kill(pid, SIGSTOP);
   EXPECT_TRUE(wait_phase(attempt::AttemptPhase::kServerLost)) << where();
@@ -72,7 +72,7 @@ TEST_F(ProcessStalls, AStoppedServerIsWaitedFor) {
   expect_going_on();
 }
 
-TEST_F(ProcessStalls, ServersAreNotBlamedWhenThisProgramWasStopped) {
+TEST_F(ProcessStalls, DoNotCountAgainstServersIfThisProgramStalls) {
   start_inside();
   stall_myself(kStall);
   expect_going_on();

@@ -21,7 +21,7 @@ double skin_peak_n(const std::vector<attempt::PunctureRecord>& punctures) {
   return skin == punctures.end() ? 0.0 : skin->peak_n;
 }
 
-TEST_F(SimulatedAttemptTest, StopsTheForcesAndGoesOn) {
+TEST_F(SimulatedAttemptTest, StopsTheForcesAndContinues) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->perform(expert());
@@ -38,7 +38,7 @@ TEST_F(SimulatedAttemptTest, StopsTheForcesAndGoesOn) {
   EXPECT_GT(finished().outcome.score, 0.0);
 }
 
-TEST_F(SimulatedAttemptTest, StaysStoppedWhenTheServerDiesMeanwhile) {
+TEST_F(SimulatedAttemptTest, StaysStoppedWhenTheServerDies) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->stop_forces();
@@ -53,7 +53,7 @@ TEST_F(SimulatedAttemptTest, StaysStoppedWhenTheServerDiesMeanwhile) {
   EXPECT_NE(attempt->view().servers[0].pid, pid);
 }
 
-TEST_F(SimulatedAttemptTest, TheHandLeadsTheNeedleAndAClampedOneDoesNot) {
+TEST_F(SimulatedAttemptTest, HandMovesTheNeedleUnlessClamped) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
   const Pose from = attempt->view().needle.X_PN;
@@ -79,7 +79,7 @@ double bend_mm(const std::vector<Vec3>& shaft_P) {
   return most;
 }
 
-TEST_F(SimulatedAttemptTest, ShowsAndReplaysTheShapeThatTheServerComputes) {
+TEST_F(SimulatedAttemptTest, ShowsAndReplaysTheComputedNeedleShape) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
   ASSERT_TRUE(run_until([&] { return attempt->view().needle.is_known; })) << where();
@@ -111,7 +111,7 @@ TEST_F(SimulatedAttemptTest, ShowsAndReplaysTheShapeThatTheServerComputes) {
   EXPECT_EQ(replay->shaft_at(0.0).size(), 2u);
 }
 
-TEST_F(SimulatedAttemptTest, TheReplayMovesTheTransducerAsItWasMoved) {
+TEST_F(SimulatedAttemptTest, ReplayReproducesTransducerMotion) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
   ASSERT_TRUE(run_until([&] { return attempt->view().probe.contact_n > 0.1; }));
@@ -134,7 +134,7 @@ TEST_F(SimulatedAttemptTest, TheReplayMovesTheTransducerAsItWasMoved) {
   EXPECT_TRUE(std::any_of(moments.begin(), moments.end(), [](const auto& m) { return m.contact_n > 0.1; }));
 }
 
-TEST_F(SimulatedAttemptTest, ParametersReachTheServerWhileItRuns) {
+TEST_F(SimulatedAttemptTest, SendsParametersToARunningServer) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 30.0}}));
@@ -156,7 +156,7 @@ TEST_F(SimulatedAttemptTest, ParametersReachTheServerWhileItRuns) {
   EXPECT_EQ(changes, (std::vector<Settings>{{}, {"skin.fp=30"}, {"liver.mu=0.2"}}));
 }
 
-TEST_F(SimulatedAttemptTest, RecordsTheTissuesThatWereFeltAndReplaysThem) {
+TEST_F(SimulatedAttemptTest, RecordsAndReplaysChangedTissues) {
   attempt::AttemptOptions chosen = options();
   chosen.waits_for_begin = true;
   start(chosen);
@@ -200,7 +200,7 @@ TEST_F(SimulatedAttemptTest, RecordsTheTissuesThatWereFeltAndReplaysThem) {
   EXPECT_LT(worst_n, 0.05);  // the server's first ticks, before the record, are not in it
 }
 
-TEST_F(SimulatedAttemptTest, ChangedTissuesOutliveTheirServer) {
+TEST_F(SimulatedAttemptTest, ChangedTissuesSurviveAServerRestart) {
   start(options());
   ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 6.0}}));
@@ -220,7 +220,7 @@ TEST_F(SimulatedAttemptTest, ChangedTissuesOutliveTheirServer) {
   EXPECT_EQ(session->parameters[1].settings, std::vector<std::string>{"skin.fp=6"});
 }
 
-TEST_F(SimulatedAttemptTest, AnAttemptThatIsLeftKeepsWhatWasRecorded) {
+TEST_F(SimulatedAttemptTest, LeavingAnAttemptKeepsItsRecording) {
   start(options());
   ASSERT_TRUE(run_until([&] { return attempt->view().session_s > 0.6; })) << where();
   leave();
@@ -230,7 +230,7 @@ TEST_F(SimulatedAttemptTest, AnAttemptThatIsLeftKeepsWhatWasRecorded) {
   EXPECT_GT(session->samples.size(), 100u);
 }
 
-TEST_F(SimulatedAttemptTest, MovesTheMousesDeviceAsWell) {
+TEST_F(SimulatedAttemptTest, MovesTheMouseDevice) {
   attempt::AttemptOptions mouse = options();
   mouse.device_needle = mouse.device_probe = "mouse";
   start(mouse);
@@ -241,7 +241,7 @@ TEST_F(SimulatedAttemptTest, MovesTheMousesDeviceAsWell) {
   EXPECT_GT(finished().outcome.score, 80.0);
 }
 
-TEST_F(SimulatedAttemptTest, WarnsOfAFullDiskThenEndsInOrderWithAWholeSession) {
+TEST_F(SimulatedAttemptTest, WarnsOfAFullDiskThenClosesTheSession) {
   const auto free_MB = std::make_shared<std::uintmax_t>(10'000);
   attempt::AttemptOptions watched = options();
   watched.free_bytes = [free_MB](const std::filesystem::path&) {

@@ -93,7 +93,7 @@ class Stalls : public SimulatedAttemptTest {
   Vec3 rest_P;
 };
 
-TEST_F(Stalls, AServerThatIsStoppedIsWaitedForAndTheNeedleStays) {
+TEST_F(Stalls, WaitForAStalledServerWithoutMovingTheNeedle) {
   open = prepared_case("abdomen");
   for (const char* device : {"mouse", "virtual:premium"}) {
     SCOPED_TRACE(device);
@@ -114,7 +114,7 @@ TEST_F(Stalls, AServerThatIsStoppedIsWaitedForAndTheNeedleStays) {
   }
 }
 
-TEST_F(Stalls, AServerThatNeverGoesOnIsReplacedAtLast) {
+TEST_F(Stalls, ReplaceAServerThatNeverRecovers) {
   start_inside();
   needle->pause();
   ASSERT_TRUE(run_until([&] { return needle->restarts() == 1; })) << where();
@@ -122,7 +122,7 @@ TEST_F(Stalls, AServerThatNeverGoesOnIsReplacedAtLast) {
   EXPECT_LT((tip_P() - rest_P).norm(), kCreep_mm);
 }
 
-TEST_F(Stalls, ServersAreNotBlamedWhenTheClientItselfStoodStill) {
+TEST_F(Stalls, DoNotRestartServersAfterAClientStall) {
   start_inside();
   for (int stall = 0; stall < 3; ++stall) {
     stall_client(kLongStall_s);
@@ -136,7 +136,7 @@ TEST_F(Stalls, ServersAreNotBlamedWhenTheClientItselfStoodStill) {
   expect_smooth_session();
 }
 
-TEST_F(Stalls, NoNumberOfStallsIsTooMuch) {
+TEST_F(Stalls, ContinueAfterAnyNumberOfStalls) {
   start_inside();
   for (int stall = 0; stall < 8; ++stall) {
     stall_needle(kShortStall_s);
@@ -146,7 +146,7 @@ TEST_F(Stalls, NoNumberOfStallsIsTooMuch) {
   EXPECT_LT((tip_P() - rest_P).norm(), kCreep_mm);
 }
 
-TEST_F(Stalls, KillsBeforeTheServerIsBackLeaveTheNeedleWhereItWas) {
+TEST_F(Stalls, RepeatedKillsDoNotMoveTheNeedle) {
   start_inside();
   for (int killed = 1; killed <= 3; ++killed) {
     needle->kill();
@@ -158,7 +158,7 @@ TEST_F(Stalls, KillsBeforeTheServerIsBackLeaveTheNeedleWhereItWas) {
 }
 
 /// What the needle presses on when its server dies is not pierced by coming back.
-TEST_F(Stalls, ALayerUnderLoadIsNotPiercedByAnotherServer) {
+TEST_F(Stalls, RestartDoesNotPierceALoadedLayer) {
   for (const bool is_on_skin : {true, false}) {
     SCOPED_TRACE(is_on_skin ? "skin" : "muscle");
     start(impatient("mouse"));
@@ -195,7 +195,7 @@ TEST_F(Stalls, AHungServerIsReplacedAfterTheTimeout) {
 }
 
 /// A hand that goes on while nothing answers would find the needle elsewhere when it does.
-TEST_F(Stalls, WhatTheHandDoesMeanwhileIsForgotten) {
+TEST_F(Stalls, DiscardHandMotionDuringAnOutage) {
   start_inside();
   needle->pause();
   ASSERT_TRUE(run_until_phase(AttemptPhase::kServerLost)) << where();
@@ -248,7 +248,7 @@ class RealtimeStalls : public ::testing::Test {
   std::shared_ptr<const void> waker;
 };
 
-TEST_F(RealtimeStalls, AnAttemptOutlivesAServerThatStoodStill) {
+TEST_F(RealtimeStalls, AttemptSurvivesAStalledServer) {
   const auto result = run(milliseconds(30'000), [&] {
     needle.pause();
     const Clock::TimePoint end = clock->now() + milliseconds(500);
@@ -263,7 +263,7 @@ TEST_F(RealtimeStalls, AnAttemptOutlivesAServerThatStoodStill) {
   EXPECT_LT(furthest_mm(), 2.0) << "where it was put again";
 }
 
-TEST_F(RealtimeStalls, AnAttemptThatStoodStillItselfDoesNotBlameItsServer) {
+TEST_F(RealtimeStalls, ClientStallDoesNotRestartTheServer) {
   const auto result = run(kImpatient, [&] {
     needle.stall_client(true);
     clock->advance(std::chrono::milliseconds(2500));

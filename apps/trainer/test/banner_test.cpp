@@ -37,7 +37,7 @@ struct BannerTest : ::testing::Test {
   Banner* banner = nullptr;
 };
 
-TEST_F(BannerTest, TakesNoPlaceInTheLayoutAndCoversNoControl) {
+TEST_F(BannerTest, OverlaysThePageWithoutCoveringControls) {
   const QRect page_before = page->geometry();
   auto& start = *page->findChild<QPushButton*>(QStringLiteral("start"));
   const QRect start_before = place_of(start);
@@ -71,7 +71,7 @@ TEST_F(BannerTest, LetsClicksThrough) {
   EXPECT_NE(window.childAt(banner->geometry().center()), banner);
 }
 
-TEST_F(BannerTest, SuccessIsGreenAndGoesByItselfAndTheStateComesBack) {
+TEST_F(BannerTest, SuccessMessageIsGreenAndExpires) {
   banner->set_state(QStringLiteral("The disk is almost full."), BannerKind::kWarning);
   EXPECT_TRUE(has_color(theme().warning));
   banner->show_message(QStringLiteral("The report is in /tmp/report.html"), BannerKind::kSuccess);

@@ -21,7 +21,7 @@
 namespace trocar::trainer {
 namespace {
 
-TEST(BriefingPage, TellsHowFarOpeningIsAndLetsNobodyBeginBefore) {
+TEST(BriefingPage, ShowsOpeningProgressAndDisablesBegin) {
   BriefingPage page;
   page.show_opening({});
   page.show_progress(QStringLiteral("surfaces"), 0.4);
@@ -57,7 +57,7 @@ TEST(BriefingPage, NamesTheKeysOfTheTasksActions) {
   }
 }
 
-TEST(BriefingPage, SaysWhyAnAttemptCannotBegin) {
+TEST(BriefingPage, ShowsWhyAnAttemptCannotBegin) {
   BriefingPage page;
   page.show_case(open_abdomen(), Difficulty::kGuided);
   auto* begin = page.findChild<QPushButton*>(QStringLiteral("begin"));
@@ -72,7 +72,7 @@ TEST(BriefingPage, SaysWhyAnAttemptCannotBegin) {
   EXPECT_EQ(text_of(page, "opening-state"), QStringLiteral("Ready"));
 }
 
-TEST(BriefingPage, EnterPressesNothingWhereAnAttemptCannotBegin) {
+TEST(BriefingPage, GivesNoButtonTheFocusWhenBeginIsDisabled) {
   BriefingPage page;
   page.show();
   page.show_case(open_abdomen(), Difficulty::kGuided);
@@ -82,7 +82,7 @@ TEST(BriefingPage, EnterPressesNothingWhereAnAttemptCannotBegin) {
   EXPECT_EQ(qobject_cast<QAbstractButton*>(page.focusWidget()), nullptr);
 }
 
-TEST(BriefingPage, TellsTheReferralAndTheTaskBeforeThePatientIsLoaded) {
+TEST(BriefingPage, ShowsReferralAndTaskBeforeThePatientIsLoaded) {
   struct Expected {
     const char* task;
     const char* patient;
@@ -120,7 +120,7 @@ TEST(BriefingPage, TellsTheReferralAndTheTaskBeforeThePatientIsLoaded) {
   }
 }
 
-TEST(BriefingPage, TheShownPointsAddUpToAHundredForEveryNeedle) {
+TEST(BriefingPage, ShownPointsAddUpTo100ForEveryNeedle) {
   for (const auto& [task, needle] :
        {std::pair("liver-biopsy", "biopsy-18g"), std::pair("lumbar-puncture", "quincke-22g-long")}) {
     TrainerChoice choice;
@@ -139,7 +139,7 @@ TEST(BriefingPage, TheShownPointsAddUpToAHundredForEveryNeedle) {
   }
 }
 
-TEST(BriefingPage, EveryPartOfAScoreHasATitleOfItsOwn) {
+TEST(BriefingPage, EveryScorePartHasAUniqueTitle) {
   std::set<std::string_view> titles;
   for (const char* part : tasks::kScoreParts) {
     EXPECT_FALSE(scoring::part_title(part).empty()) << part;
@@ -149,7 +149,7 @@ TEST(BriefingPage, EveryPartOfAScoreHasATitleOfItsOwn) {
   EXPECT_TRUE(scoring::part_title("no part").empty());
 }
 
-TEST(BriefingPage, CallsUnknownWhatNobodyStated) {
+TEST(BriefingPage, ShowsMissingReferralDataAsNotStated) {
   TrainerChoice choice;
   choice.patient = "/no/such/patient";
   BriefingPage page;
@@ -195,7 +195,7 @@ QString finding_with(const std::string& description) {
   return text;
 }
 
-TEST(BriefingPage, TellsTheSegmentOfTheTargetAndNotOfAnotherLesion) {
+TEST(BriefingPage, NamesTheLiverSegmentOfTheTargetLesionOnly) {
   const cases::Case& the_case = open_abdomen()->the_case;
   const Segment& path_P = the_case.plan.line_P;
   const anatomy::Label* target =
@@ -225,7 +225,7 @@ TEST(BriefingPage, FitsSmallAndLargeWindows) {
   }
 }
 
-TEST(BriefingPage, ShowsTheCaseAndLetsBegin) {
+TEST(BriefingPage, ShowsTheCaseAndEnablesBegin) {
   BriefingPage page;
   page.resize(1280, 700);
   page.show();
@@ -242,7 +242,7 @@ TEST(BriefingPage, ShowsTheCaseAndLetsBegin) {
   EXPECT_TRUE(says_help);
 }
 
-TEST(BriefingPage, TellsTheShareOfThePathInTheOrganIfItHasOne) {
+TEST(BriefingPage, ShowsThePathLengthWithinTheOrgan) {
   cases::Case the_case = open_abdomen()->the_case;
   the_case.plan.length_mm = 58.0;
   the_case.plan.organ_path_mm = 21.0;
@@ -253,7 +253,7 @@ TEST(BriefingPage, TellsTheShareOfThePathInTheOrganIfItHasOne) {
   EXPECT_EQ(path_row(the_case).text, QStringLiteral("58 mm long; nearest structure at risk: cauda equina"));
 }
 
-TEST(BriefingPage, TellsNothingOfTheWayInAnExam) {
+TEST(BriefingPage, HidesThePlannedPathInAnExam) {
   BriefingPage page;
   page.resize(1280, 700);
   page.show();
@@ -270,7 +270,7 @@ TEST(BriefingPage, TellsNothingOfTheWayInAnExam) {
   save(page, "briefing_exam.png");
 }
 
-TEST(BriefingPicture, ShowsThePathInGuidedAttemptsAlone) {
+TEST(BriefingPicture, ShowsThePathOnlyInGuidedAttempts) {
   const QSize size(400, 300);
   const auto share_of_path = [&](scene::Guidance guidance) {
     return share_near(briefing_picture(*open_abdomen(), BriefingPlane::kAlongPath, size, guidance), theme().path, 12);
@@ -282,7 +282,7 @@ TEST(BriefingPicture, ShowsThePathInGuidedAttemptsAlone) {
   EXPECT_EQ(share_of_path(scene::Guidance::kNone), 0.0);
 }
 
-TEST(BriefingPicture, TheLegendHasTheColoursThatThePictureShows) {
+TEST(BriefingPicture, LegendColoursMatchTheImage) {
   const QSize size(400, 300);
   for (const scene::Guidance guidance : {scene::Guidance::kTarget, scene::Guidance::kNone}) {
     const auto entries = briefing_legend(*open_abdomen(), BriefingPlane::kAxial, size, guidance);
@@ -308,7 +308,7 @@ TEST(BriefingPicture, MarksTheTargetInEveryPlane) {
   }
 }
 
-TEST(BriefingLegend, ColoursOfOneTissueAreToldApart) {
+TEST(BriefingLegend, LabelsColoursOfOneTissueByStructure) {
   std::vector<LegendEntry> entries{{Qt::red, "vessel", 0.2, false, "aorta", 0.15},
                                    {Qt::blue, "vessel", 0.1, false, "portal vein", 0.1},
                                    {Qt::white, "bone", 0.1, false, "rib", 0.02}};

@@ -70,7 +70,7 @@ TEST_F(CasePageTest, MirroredLabelsAreRepairedOrConfirmed) {
   EXPECT_TRUE(has_line("confirmed: mirrored")) << page_.editor().message();
 }
 
-TEST_F(CasePageTest, AToldFindingIsConfirmedAndTheConfirmationUndone) {
+TEST_F(CasePageTest, ConfirmsAFindingAndUndoesIt) {
   // The CT table is in front of the body: a prone scan.
   const TemporaryFolder folder;
   auto ct = io::read_ct(*files_ / "ct.nrrd");
@@ -107,7 +107,7 @@ TEST_F(CasePageTest, AToldFindingIsConfirmedAndTheConfirmationUndone) {
   EXPECT_FALSE(find<QLabel>("case-finding").isVisible());
 }
 
-TEST_F(CasePageTest, CaseIsMadeByClicksSavedAndOpenedAgain) {
+TEST_F(CasePageTest, SavesAndReopensACaseMadeByClicks) {
   const TemporaryFolder folder;
   import_files();
   ASSERT_TRUE(wait_for_review());
@@ -206,7 +206,7 @@ TEST_F(CasePageTest, RealCtBecomesACase) {
   save_steps("case_torso");
 }
 
-TEST_F(CasePageTest, BrokenImportSaysOneLineAndLeavesTheDraft) {
+TEST_F(CasePageTest, FailedImportShowsOneLineAndKeepsTheDraft) {
   import("layers-liver", "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
   ASSERT_TRUE(page_.editor().has_patient()) << page_.editor().message();
@@ -239,7 +239,7 @@ TEST_F(CasePageTest, OnlyImportsThatSucceededAreRecent) {
   EXPECT_EQ(recent.item(0)->toolTip(), QStringLiteral("layers-liver"));
 }
 
-TEST_F(CasePageTest, FilesThatAreChosenAfterAFailureReplaceTheFailedOnes) {
+TEST_F(CasePageTest, NewFilesReplaceThoseOfAFailedImport) {
   auto& labels = find<QLineEdit>("case-labels");
   const auto choose = [&](const fs::path& file) {
     QTimer::singleShot(0, &page_, [&] {
@@ -265,12 +265,12 @@ TEST_F(CasePageTest, FilesThatAreChosenAfterAFailureReplaceTheFailedOnes) {
   EXPECT_EQ(labels.text(), to_qt((folder / "one.nrrd").string()));
 }
 
-TEST_F(CasePageTest, ButtonsThatRemoveSaySo) {
+TEST_F(CasePageTest, RemoveButtonsNameWhatTheyRemove) {
   EXPECT_EQ(find<QPushButton>("case-zone-clear").text(), QStringLiteral("Remove entry zone"));
   EXPECT_EQ(find<QPushButton>("case-path-clear").text(), QStringLiteral("Remove path"));
 }
 
-TEST_F(CasePageTest, CancelledImportLeavesThePageAsItWas) {
+TEST_F(CasePageTest, CancelledImportLeavesThePageUnchanged) {
   start_import_of_files();
   page_.advance();
   EXPECT_TRUE(find<QPushButton>("case-cancel").isVisible());
@@ -312,7 +312,7 @@ TEST_F(CasePageTest, LabelsAndRisksAreEditedWithUndo) {
   EXPECT_EQ(risks.rowCount(), rows);
 }
 
-TEST_F(CasePageTest, LandmarksArePlacedMovedRenamedAndRemovedWithUndo) {
+TEST_F(CasePageTest, EditsLandmarksWithUndo) {
   import("layers-liver", "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
   press("case-step-3");
@@ -369,7 +369,7 @@ TEST_F(CasePageTest, LandmarksArePlacedMovedRenamedAndRemovedWithUndo) {
   EXPECT_FALSE(find<QLabel>("case-click-text").isVisible()) << "the tool is put away";
 }
 
-TEST_F(CasePageTest, CheckJumpsToWhatItMeans) {
+TEST_F(CasePageTest, CheckJumpsToItsLocation) {
   import("layers-liver", "", "totalsegmentator");
   ASSERT_TRUE(wait_for_work());
   page_.advance();

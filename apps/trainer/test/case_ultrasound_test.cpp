@@ -148,7 +148,7 @@ TEST_F(CaseUltrasoundTest, CancelledRegistrationAndABrokenFileChangeNothing) {
   EXPECT_TRUE(draft().ultrasound);
 }
 
-TEST_F(CaseUltrasoundTest, PlaneOfTheUltrasoundShowsTheLandmarkThatTheListNames) {
+TEST_F(CaseUltrasoundTest, SelectingALandmarkMovesBothSliceViewsToIt) {
   read_ultrasound();
   place_pairs();
   auto& list = find<QTableWidget>("case-pairs");

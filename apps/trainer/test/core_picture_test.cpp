@@ -37,7 +37,7 @@ TEST(CorePicture, ShowsEachPartToScale) {
   save(picture, "core_picture.png");
 }
 
-TEST(CorePicture, SaysThatANotchIsEmpty) {
+TEST(CorePicture, ReportsAnEmptyNotch) {
   CorePicture picture;
   const attempt::GunShot empty;
   picture.set_shots({&empty, 1});

@@ -54,7 +54,7 @@ TEST_P(Field, KeepsItsRangeAndDecimals) {
   EXPECT_EQ(typed(field, "-4,5"), -4.5);
 }
 
-TEST_P(Field, SaysWhatItTakesWhenItDoesNotTakeAKey) {
+TEST_P(Field, ShowsTheValidRangeWhenAKeyIsRefused) {
   field.show();
   QToolTip::hideText();
   typed(field, "12.5");
@@ -65,7 +65,7 @@ TEST_P(Field, SaysWhatItTakesWhenItDoesNotTakeAKey) {
   QToolTip::hideText();
 }
 
-TEST_P(Field, ShowsWhatItTakesAndStepsByKeys) {
+TEST_P(Field, AcceptsItsOwnTextAndStepsByKeys) {
   field.setValue(4.5);
   EXPECT_EQ(to_std(field.cleanText()), to_std(field.locale().toString(4.5, 'f', 1)));
   field.setValue(4.0);

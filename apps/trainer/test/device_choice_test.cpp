@@ -66,7 +66,7 @@ void push_until_felt(const DeviceTestDialog& dialog, const trocar::testing::HdCo
     ADD_FAILURE() << name << ": " << dialog.findChild<QLabel*>(QString::fromLatin1(name))->text().toStdString();
 }
 
-TEST_F(DeviceChoiceTest, NamesTheDevicesAndKeepsThemApart) {
+TEST_F(DeviceChoiceTest, ListsDevicesByNameWithoutDuplicates) {
   DeviceChoice choice;
   choice.choose("openhaptics:Left Device", "openhaptics:Right Device");
   EXPECT_EQ(choice.needle(), "openhaptics:Left Device");
@@ -88,13 +88,13 @@ TEST_F(DeviceChoiceTest, OneDeviceCannotBeBothTools) {
   EXPECT_EQ(choice.probe(), "mouse") << "the transducer gives way";
 }
 
-TEST_F(DeviceChoiceTest, ADeviceOfLastTimeThatIsNotListedIsKept) {
+TEST_F(DeviceChoiceTest, KeepsASavedDeviceThatIsNoLongerListed) {
   DeviceChoice choice;
   choice.choose("openhaptics:Old Device", "mouse");
   EXPECT_EQ(choice.needle(), "openhaptics:Old Device");
 }
 
-TEST_F(DeviceChoiceTest, TheTestSaysWhetherADeviceAnswersMovesAndPushes) {
+TEST_F(DeviceChoiceTest, DeviceTestReportsAnswerMotionAndForce) {
   DeviceTestDialog dialog(QStringLiteral("openhaptics:Left Device"), QStringLiteral("Left Device"));
   EXPECT_TRUE(
       text_when(dialog, "device-answer", QStringLiteral("Premium")).startsWith(QStringLiteral("The device responds")));
@@ -108,7 +108,7 @@ TEST_F(DeviceChoiceTest, TheTestSaysWhetherADeviceAnswersMovesAndPushes) {
   EXPECT_EQ(omni->openings, 0);
 }
 
-TEST_F(DeviceChoiceTest, AForceThatTheSafetyGateStopsIsToldAndMayBeRequestedAgain) {
+TEST_F(DeviceChoiceTest, ReportsAForceStoppedByTheSafetyGate) {
   DeviceTestDialog dialog(QStringLiteral("openhaptics:Left Device"), QStringLiteral("Left Device"));
   text_when(dialog, "device-pose", QStringLiteral("Move the device"));
   text_when(dialog, "device-force", QStringLiteral("No force is applied"));
@@ -132,7 +132,7 @@ while read -r line; do
 done
 )";
 
-TEST_F(DeviceChoiceTest, AForceTooWeakToBeFeltIsTold) {
+TEST_F(DeviceChoiceTest, ReportsAForceTooWeakToFeel) {
   QTemporaryDir folder;
   QFile program(folder.filePath(QStringLiteral("trocar-hapticd")));
   ASSERT_TRUE(program.open(QIODevice::WriteOnly));
@@ -150,7 +150,7 @@ TEST_F(DeviceChoiceTest, AForceTooWeakToBeFeltIsTold) {
   }
 }
 
-TEST_F(DeviceChoiceTest, MissingAndUnpluggedDevicesAreToldInOneLine) {
+TEST_F(DeviceChoiceTest, ReportsMissingAndUnpluggedDevicesInOneLine) {
   omni->is_present = 0;
   DeviceTestDialog dialog(QStringLiteral("openhaptics:Right Device"), QStringLiteral("Right Device"));
   const QString missing = text_when(dialog, "device-answer", QStringLiteral("does not respond."));
@@ -163,7 +163,7 @@ TEST_F(DeviceChoiceTest, MissingAndUnpluggedDevicesAreToldInOneLine) {
   text_when(dialog, "device-answer", QStringLiteral("no longer responds"));
 }
 
-TEST_F(DeviceChoiceTest, APremiumIsCalibratedWhereItsArmIsHeldForIt) {
+TEST_F(DeviceChoiceTest, CalibratesAPremiumWhileItsArmIsHeld) {
   premium->calibration = 0x5002;  // HD_CALIBRATION_NEEDS_MANUAL_INPUT
   DeviceTestDialog dialog(QStringLiteral("openhaptics:Left Device"), QStringLiteral("Left Device"));
   text_when(dialog, "device-answer", QStringLiteral("not calibrated"));

@@ -52,7 +52,7 @@ class WindowCount : public QObject {
   int opened = 0;
 };
 
-TEST(FeedbackPanelTest, OpensNoWindowOfItsOwn) {
+TEST(FeedbackPanelTest, OpensInsideTheMainWindow) {
   FeedbackPanel panel;
   panel.show();
   const WindowCount windows;
@@ -62,7 +62,7 @@ TEST(FeedbackPanelTest, OpensNoWindowOfItsOwn) {
   EXPECT_EQ(windows.opened, 0);
 }
 
-TEST(FeedbackPanelTest, ShowsWhatHappenedBesideTheTrainee) {
+TEST(FeedbackPanelTest, ShowsAttemptNotes) {
   FeedbackPanel panel;
   const auto* notes = panel.findChild<QLabel*>(QStringLiteral("attempt-notes"));
   ASSERT_NE(notes, nullptr);
@@ -91,7 +91,7 @@ TEST(FeedbackPanelTest, OpensAtTheTopEachTime) {
   }
 }
 
-TEST(FeedbackPanelTest, AFilesNameInANoteCutsNothingOff) {
+TEST(FeedbackPanelTest, WrapsALongFileNameInANote) {
   FeedbackPanel panel;
   panel.resize(238, 700);
   panel.show_outcome(long_outcome(), {});
@@ -102,7 +102,7 @@ TEST(FeedbackPanelTest, AFilesNameInANoteCutsNothingOff) {
   EXPECT_LE(area.widget()->width(), area.viewport()->width());
 }
 
-TEST(FeedbackPanelTest, TheLevelStandsBesideTheScore) {
+TEST(FeedbackPanelTest, ShowsTheLevelBesideTheScore) {
   FeedbackPanel panel;
   panel.show_level(QStringLiteral("Exam"));
   auto* level = panel.findChild<QLabel*>(QStringLiteral("level"));
@@ -112,7 +112,7 @@ TEST(FeedbackPanelTest, TheLevelStandsBesideTheScore) {
   EXPECT_TRUE(level->isHidden());
 }
 
-TEST(FeedbackPanelTest, AfterAnExamTheButtonBeginsTheNextOne) {
+TEST(FeedbackPanelTest, ButtonOffersTheNextExamAfterAnExam) {
   FeedbackPanel panel;
   auto* again = panel.findChild<QPushButton*>(QStringLiteral("try-again"));
   EXPECT_EQ(again->text(), QStringLiteral("Try again"));
@@ -123,7 +123,7 @@ TEST(FeedbackPanelTest, AfterAnExamTheButtonBeginsTheNextOne) {
   EXPECT_EQ(again->text(), QStringLiteral("Try again"));
 }
 
-TEST(FeedbackPanelTest, SaysWhyAnAttemptIsNotScored) {
+TEST(FeedbackPanelTest, ShowsWhyAnAttemptIsNotScored) {
   FeedbackPanel panel;
   scoring::Outcome outcome;
   outcome.not_scored = "the needle never touched the skin";
@@ -142,7 +142,7 @@ QString text_of(const FeedbackPanel& panel, const char* name) {
   return panel.findChild<QLabel*>(QString::fromLatin1(name))->text();
 }
 
-TEST(FeedbackPanelTest, TellsWhetherTheAttemptPassedAndWhyNot) {
+TEST(FeedbackPanelTest, ShowsTheVerdictWithItsReasons) {
   FeedbackPanel panel;
   scoring::Outcome outcome = long_outcome();
   outcome.fails = {"the lung was touched", "the score is below 70"};
@@ -159,7 +159,7 @@ TEST(FeedbackPanelTest, TellsWhetherTheAttemptPassedAndWhyNot) {
   EXPECT_EQ(text_of(panel, "verdict"), QStringLiteral("The target was missed"));
 }
 
-TEST(FeedbackPanelTest, AHintWithAMomentShowsIt) {
+TEST(FeedbackPanelTest, HintJumpsToItsMoment) {
   FeedbackPanel panel;
   panel.resize(238, 900);
   scoring::Outcome outcome = long_outcome();

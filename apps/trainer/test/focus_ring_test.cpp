@@ -14,7 +14,7 @@
 namespace trocar::trainer {
 namespace {
 
-TEST(FocusRing, IsDrawnOnControlsOfEveryKindAndOnOneAtATime) {
+TEST(FocusRing, OutlinesOnlyTheFocusedControl) {
   QWidget page;
   page.setObjectName(QStringLiteral("start-page"));
   auto* column = new QVBoxLayout(&page);
@@ -44,7 +44,7 @@ TEST(FocusRing, IsDrawnOnControlsOfEveryKindAndOnOneAtATime) {
   EXPECT_EQ(ring.target(), nullptr);
 }
 
-TEST(FocusRing, FollowsItsTargetsSizeAndEnd) {
+TEST(FocusRing, FollowsResizeAndDeletionOfItsTarget) {
   QWidget window;
   auto* button = new QPushButton(QStringLiteral("Begin"), &window);
   window.show();

@@ -25,7 +25,7 @@ double share(ForceBar& bar, const QRectF& area, const QColor& color) {
   return reached / length;
 }
 
-TEST(ForceBar, FillsByTheShareOfTheDevicesForce) {
+TEST(ForceBar, FillsInProportionToTheForce) {
   for (const Qt::Orientation orientation : {Qt::Vertical, Qt::Horizontal}) {
     ForceBar bar(orientation);
     bar.resize(orientation == Qt::Vertical ? QSize(60, 240) : QSize(360, 36));
@@ -42,7 +42,7 @@ TEST(ForceBar, FillsByTheShareOfTheDevicesForce) {
   }
 }
 
-TEST(ForceBar, HoldsThePeakAndLetsItGo) {
+TEST(ForceBar, HoldsThePeakThenReleasesIt) {
   ForceBar bar;
   bar.set_scale(4.0, 10.0);
   bar.set_force(2.0, 10.0);
@@ -57,7 +57,7 @@ TEST(ForceBar, HoldsThePeakAndLetsItGo) {
   EXPECT_EQ(bar.peak_n(), 0.4);
 }
 
-TEST(ForceBar, IgnoresWhatIsNotFinite) {
+TEST(ForceBar, IgnoresNonFiniteValues) {
   ForceBar bar;
   bar.set_force(1.0, 0.0);
   bar.set_force(std::nan(""), 1.0);
@@ -66,7 +66,7 @@ TEST(ForceBar, IgnoresWhatIsNotFinite) {
   EXPECT_EQ(bar.lag_mm(), 0.0);
 }
 
-TEST(ForceBar, CanBeLookedAt) {
+TEST(ForceBar, RendersToAnImage) {
   QWidget window;
   window.resize(480, 240);
   ForceBar upright(Qt::Vertical, &window);

@@ -63,7 +63,7 @@ TEST(CurveTrace, KeepsEveryPeakAndFewPoints) {
   for (const std::size_t peak : peaks) EXPECT_TRUE(std::binary_search(drawn.begin(), drawn.end(), peak)) << peak;
 }
 
-TEST(CurveTrace, ThinsTheSameWhateverTheWidthWasBefore) {
+TEST(CurveTrace, ThinsIndependentlyOfEarlierWidths) {
   CurveTrace grown, rewidened;
   grown.set_column_width(2.0);
   rewidened.set_column_width(0.1);
@@ -80,7 +80,7 @@ TEST(CurveTrace, ThinsTheSameWhateverTheWidthWasBefore) {
   EXPECT_EQ(grown.drawn(2500).back(), 2499U);
 }
 
-TEST(CurveTrace, DrawsNothingMoreForATremblingHand) {
+TEST(CurveTrace, TremorAddsNoDrawnPoints) {
   CurveTrace trace;
   trace.set_column_width(0.5);
   for (int n = 0; n < 100000; ++n) trace.append({30.0 + 0.2 * std::sin(0.06 * n), std::cos(0.3 * n)});
@@ -137,7 +137,7 @@ TEST(ForcePlot, SwitchesToTimeByKeyAndButton) {
   EXPECT_EQ(shown.plot.axis(), ForcePlot::Axis::kDepth);
 }
 
-TEST(ForcePlot, CursorGoesToItsTime) {
+TEST(ForcePlot, MovesTheCursorToATime) {
   ShownPlot shown;
   EXPECT_FALSE(shown.plot.current().has_value());
   shown.plot.append(insertion(6.0));
@@ -151,7 +151,7 @@ TEST(ForcePlot, CursorGoesToItsTime) {
   EXPECT_FALSE(shown.plot.current().has_value());
 }
 
-TEST(ForcePlot, LeavesOutWhatIsNotFinite) {
+TEST(ForcePlot, SkipsNonFiniteValues) {
   ShownPlot shown;
   const double nan = std::nan("");
   const std::vector<ForcePoint> points{{0.0, nan, 1.0}, {0.1, 1.0, INFINITY}, {nan, 1.0, 1.0}, {0.2, 5.0, 0.5}};
@@ -180,7 +180,7 @@ TEST(ForcePlot, MarksPuncturesWithTheirNames) {
   EXPECT_GT(named, 10);
 }
 
-TEST(ForcePlot, CanBeLookedAt) {
+TEST(ForcePlot, RendersToAnImage) {
   QWidget window;
   window.resize(700, 520);
   const QRect places[] = {{0, 0, 420, 260}, {430, 0, 260, 180}, {0, 265, 420, 250}, {430, 265, 220, 140}};
@@ -206,7 +206,7 @@ TEST(ForcePlot, CanBeLookedAt) {
   for (const auto& plot : plots) EXPECT_EQ(image.pixelColor(plot->pos() + QPoint(1, 1)), theme().panel);
 }
 
-TEST(ForcePlot, TellsNoDepthWhereItIsNotShown) {
+TEST(ForcePlot, HidesDepthWhenDepthIsNotShown) {
   ShownPlot shown;
   shown.plot.append(insertion(5.0));
   shown.plot.add_event(20.0, 2.0, QStringLiteral("shot"));

@@ -10,7 +10,7 @@ void draw(FrameCount& count, double& now_s, double for_s, bool is_judged) {
   for (const double end_s = now_s + for_s; now_s < end_s; now_s += 0.016) count.add(now_s, is_judged);
 }
 
-TEST(FrameCount, SaysTheSlowestFrameAndTheLateOnesBesideTheMean) {
+TEST(FrameCount, ReportsMeanSlowestAndLateFrames) {
   FrameCount count;
   double now_s = 5.0;
   draw(count, now_s, 2.0, true);
@@ -27,7 +27,7 @@ TEST(FrameCount, SaysTheSlowestFrameAndTheLateOnesBesideTheMean) {
   EXPECT_EQ(count.figures()->late, 1U) << "of the whole attempt";
 }
 
-TEST(FrameCount, CountsLateFramesOfThisAttemptAlone) {
+TEST(FrameCount, CountsLateFramesPerAttempt) {
   FrameCount count;
   double now_s = 0.0;
   EXPECT_FALSE(count.figures());

@@ -45,7 +45,7 @@ Names named_by(const Layout& layout) {
   return names;
 }
 
-TEST_F(LayoutsTest, ALayoutShowsItsViewsAndNoOthersWheneverItIsChosen) {
+TEST_F(LayoutsTest, ShowsExactlyTheViewsOfTheLayout) {
   Workspace workspace;
   workspace.resize(1000, 700);
   workspace.show();
@@ -59,7 +59,7 @@ TEST_F(LayoutsTest, ALayoutShowsItsViewsAndNoOthersWheneverItIsChosen) {
   }
 }
 
-TEST_F(LayoutsTest, TheMenuAddsAViewToALayoutThatDoesNotHaveIt) {
+TEST_F(LayoutsTest, MenuAddsAViewToALayoutWithoutIt) {
   Workspace workspace;
   workspace.resize(1000, 700);
   workspace.show();
@@ -77,7 +77,7 @@ TEST_F(LayoutsTest, TheMenuAddsAViewToALayoutThatDoesNotHaveIt) {
   }
 }
 
-TEST_F(LayoutsTest, AViewThatWasHiddenStaysHiddenUntilTheLayoutIsReset) {
+TEST_F(LayoutsTest, HiddenViewStaysHiddenUntilTheLayoutIsReset) {
   Workspace workspace;
   workspace.resize(1000, 700);
   workspace.show();

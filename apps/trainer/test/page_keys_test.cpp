@@ -49,7 +49,7 @@ struct KeysTest : ::testing::Test {
   QSpinBox* number = new QSpinBox;
 };
 
-TEST_F(KeysTest, AreSeenBeforeEveryControlOfTheWindow) {
+TEST_F(KeysTest, ReceivesKeysBeforeEveryControl) {
   int seen = 0;
   PageKeys keys(window,
                 [&](const QKeyEvent& key, const KeyPlace&) { return key.key() == Qt::Key_Space && ++seen > 0; });
@@ -66,7 +66,7 @@ TEST_F(KeysTest, AreSeenBeforeEveryControlOfTheWindow) {
   EXPECT_EQ(seen, 9);
 }
 
-TEST_F(KeysTest, KnowWhereTheyAreStruck) {
+TEST_F(KeysTest, ReportsTheWidgetOfAKeyPress) {
   KeyPlace place;
   PageKeys keys(window, [&](const QKeyEvent&, const KeyPlace& p) {
     place = p;
@@ -85,7 +85,7 @@ TEST_F(KeysTest, KnowWhereTheyAreStruck) {
 }
 
 // Qt closes an open list at the override event of a key, and gives the key to the list's box.
-TEST_F(KeysTest, WhatClosesAnOpenListDoesNothingElse) {
+TEST_F(KeysTest, KeyThatClosesAListDoesNothingElse) {
   int seen = 0, aside = 0;
   PageKeys keys(window, [&](const QKeyEvent&, const KeyPlace& place) {
     ++seen;
@@ -122,7 +122,7 @@ TEST_F(KeysTest, WhatClosesAnOpenListDoesNothingElse) {
   }
 }
 
-TEST_F(KeysTest, EndingIsRefusedInAListToo) {
+TEST_F(KeysTest, RefusesEndingInsideAList) {
   const ActionRow& end = row_of(Action::kEnd);
   KeyPlace place;
   place.is_choice = true;
@@ -131,7 +131,7 @@ TEST_F(KeysTest, EndingIsRefusedInAListToo) {
   EXPECT_NE(judge_key(yes, QKeyEvent(QEvent::KeyPress, Qt::Key_Return, Qt::NoModifier), place), KeyVerdict::kPerform);
 }
 
-TEST_F(KeysTest, ToolsAreTakenWhereverTheFocusIsAndArrowsThenMoveThem) {
+TEST_F(KeysTest, ToolKeysWorkWithAnyFocusAndArrowsThenMoveTheTool) {
   ToolGestures gestures;
   gestures.watch(*view, [] { return ViewScale{}; });
   int moved = 0, fired = 0, clicked = 0, refused = 0;

@@ -13,17 +13,17 @@ haptics::Palpation felt(double stiffness_n_per_mm, std::optional<double> bone_mm
   return palpation;
 }
 
-TEST(PalpationTag, NamesHardnessAndWhatLiesBelow) {
+TEST(PalpationTag, NamesHardnessAndTheBoneBelow) {
   EXPECT_EQ(PalpationTag::words_of(felt(5.0, 6.2), true), QStringLiteral("Hard: bone 6 mm below the skin"));
   EXPECT_TRUE(PalpationTag::words_of(felt(0.1, {}), true).startsWith(QStringLiteral("Soft: no bone")));
 }
 
-TEST(PalpationTag, AnExamIsToldTheHardnessAlone) {
+TEST(PalpationTag, ShowsOnlyTheHardnessInAnExam) {
   EXPECT_EQ(PalpationTag::words_of(felt(5.0, 6.2), false), QStringLiteral("Hard"));
   EXPECT_EQ(PalpationTag::words_of(felt(haptics::kFirm_n_per_mm, {}), false), QStringLiteral("Firm"));
 }
 
-TEST(PalpationTag, IsWideEnoughForItsWords) {
+TEST(PalpationTag, FitsItsText) {
   PalpationTag tag;
   EXPECT_TRUE(tag.isHidden());
   tag.show_felt(felt(5.0, 18.0), true);

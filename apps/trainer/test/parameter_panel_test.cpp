@@ -22,7 +22,7 @@ namespace {
 
 using ParameterPanelTest = ParameterLab;
 
-TEST_F(ParameterPanelTest, EveryTextHasRoom) {
+TEST_F(ParameterPanelTest, FitsEveryText) {
   for (const int width : {320, 340, 420}) {
     panel.resize(width, 900);
     settle();
@@ -30,7 +30,7 @@ TEST_F(ParameterPanelTest, EveryTextHasRoom) {
   }
 }
 
-TEST_F(ParameterPanelTest, TissuesOnThePathComeFirst) {
+TEST_F(ParameterPanelTest, ListsTissuesOnThePathFirst) {
   std::vector<std::string> on_path;
   for (const cases::PathPiece& piece : opened->pieces)
     if (std::find(on_path.begin(), on_path.end(), piece.tissue) == on_path.end()) on_path.push_back(piece.tissue);
@@ -44,7 +44,7 @@ TEST_F(ParameterPanelTest, TissuesOnThePathComeFirst) {
   EXPECT_TRUE(sent.empty()) << "nothing differs";
 }
 
-TEST_F(ParameterPanelTest, AStifferCapsuleChangesThePredictedForceAndUndoGivesItBack) {
+TEST_F(ParameterPanelTest, StifferCapsuleChangesThePredictionUntilUndo) {
   open_tissue("parameter-tissue-liver");
   const double before_mm = way_mm("liver_capsule");
   const std::vector<cases::CurvePoint> before = panel.preview().changed_curve();
@@ -73,7 +73,7 @@ TEST_F(ParameterPanelTest, AStifferCapsuleChangesThePredictedForceAndUndoGivesIt
   EXPECT_EQ(sent.back(), QStringList{QStringLiteral("liver.k=0.05")});
 }
 
-TEST_F(ParameterPanelTest, ADraggedSliderIsOneStepAndOneMessage) {
+TEST_F(ParameterPanelTest, SliderDragIsOneUndoStepAndOneMessage) {
   open_tissue("parameter-tissue-liver");
   auto* slider = part<QSlider>("parameter-liver-fc-slider");
   slider->setSliderDown(true);
@@ -86,7 +86,7 @@ TEST_F(ParameterPanelTest, ADraggedSliderIsOneStepAndOneMessage) {
   EXPECT_TRUE(panel.settings().isEmpty());
 }
 
-TEST_F(ParameterPanelTest, RefusesWhatIsOutOfRangeAndSaysTheRange) {
+TEST_F(ParameterPanelTest, RefusesOutOfRangeValuesAndShowsTheRange) {
   open_tissue("parameter-tissue-liver");
   auto* refused = part<QLabel>("parameter-liver-k-refused");
   for (const char* bad : {"51", "0", "-1", "nan", "1e999", "much", "never"}) {
@@ -139,7 +139,7 @@ TEST_F(ParameterPanelTest, ResetsANumberATissueAndAll) {
   EXPECT_TRUE(panel.settings().isEmpty());
 }
 
-TEST_F(ParameterPanelTest, AnotherForceModelIsToldAndPredicted) {
+TEST_F(ParameterPanelTest, EmitsAndPreviewsAnotherForceModel) {
   auto* choice = part<QComboBox>("parameter-model");
   EXPECT_EQ(choice->currentData().toString(), QStringLiteral("insertion"));
   const double insertion_n = panel.preview().changed_curve().back().force_n;
@@ -151,7 +151,7 @@ TEST_F(ParameterPanelTest, AnotherForceModelIsToldAndPredicted) {
   keep_picture("parameters_proxy.png");
 }
 
-TEST_F(ParameterPanelTest, ChangesOutliveAnotherCaseWithTheSameTissues) {
+TEST_F(ParameterPanelTest, KeepsChangesForACaseWithTheSameTissues) {
   open_tissue("parameter-tissue-liver");
   type("parameter-liver-k", "0.5");
   settle();
@@ -164,7 +164,7 @@ TEST_F(ParameterPanelTest, ChangesOutliveAnotherCaseWithTheSameTissues) {
   EXPECT_TRUE(panel.settings().isEmpty());
 }
 
-TEST_F(ParameterPanelTest, TakesHandWrittenNamesAsOneStep) {
+TEST_F(ParameterPanelTest, AppliesHandWrittenSettingsAsOneUndoStep) {
   // skin is the first tissue with its layer and has one viscosity: nu is both laws'.
   const Status done = panel.apply_settings(
       {QStringLiteral("liver_capsule.stiffness_n_per_mm=0.9"), QStringLiteral("layers.skin.fp=4"),
@@ -189,7 +189,7 @@ TEST_F(ParameterPanelTest, TakesHandWrittenNamesAsOneStep) {
   EXPECT_TRUE(panel.settings().isEmpty());
 }
 
-TEST_F(ParameterPanelTest, ATissueLowInTheListIsScrolledIntoView) {
+TEST_F(ParameterPanelTest, ScrollsAnOpenedTissueIntoView) {
   auto* scroll = panel.findChild<QScrollArea*>();
   const auto top_of = [&](const char* name) {
     return part<QPushButton>(name)->mapTo(scroll->viewport(), QPoint()).y();
@@ -207,7 +207,7 @@ TEST_F(ParameterPanelTest, ATissueLowInTheListIsScrolledIntoView) {
   EXPECT_LT(top_of("parameter-tissue-skin"), height / 4);
 }
 
-TEST_F(ParameterPanelTest, NothingIsCutOffAt340By700) {
+TEST_F(ParameterPanelTest, FitsIn340By700Pixels) {
   open_tissue("parameter-tissue-skin");
   keep_picture("parameters_340.png");
   EXPECT_EQ(panel.width(), 340);
@@ -244,7 +244,7 @@ TEST_F(ParameterPanelTest, AllHeadersFitWhenAllTissuesAreChanged) {
   }
 }
 
-TEST(ParameterScale, PositionsAndNumbersBelongTogether) {
+TEST(ParameterScale, MapsPositionsToNumbersAndBack) {
   for (const auto& [low, high, log_from] : {std::tuple(0.001, 50.0, 0.001), std::tuple(0.0, 1.0, 1e-4),
                                             std::tuple(0.0, 2.0, 0.0), std::tuple(0.0, 1e6, 0.1)}) {
     anatomy::TissueParameter parameter;

@@ -35,7 +35,7 @@ class ParameterProfilesTest : public ParameterLab {
   bool is_marked() { return !choice().itemIcon(choice().currentIndex()).isNull(); }
 };
 
-TEST_F(ParameterProfilesTest, WhatIsSavedComesBackWhenItIsChosen) {
+TEST_F(ParameterProfilesTest, ChoosingAProfileRestoresItsSettings) {
   EXPECT_EQ(choice().count(), 1) << "the case's own";
   EXPECT_FALSE(part<QToolButton>("parameter-profile-delete")->isEnabled());
   ASSERT_TRUE(panel.apply_settings({QStringLiteral("liver.k=0.3"), QStringLiteral("transfer.tn_factor=1.2")}));
@@ -66,7 +66,7 @@ TEST_F(ParameterProfilesTest, WhatIsSavedComesBackWhenItIsChosen) {
   EXPECT_EQ(sent.back(), settings);
 }
 
-TEST_F(ParameterProfilesTest, ChoosingIsOneStepOfUndoWithItsForceModel) {
+TEST_F(ParameterProfilesTest, ChoosingAProfileIsOneUndoStep) {
   write("stiff.toml",
         "name = \"Stiff\"\nforce_model = \"proxy\"\noverrides = [\"liver_capsule.stiffness_n_per_mm=0.9\", "
         "\"skin.fp=4\"]\n");
@@ -91,7 +91,7 @@ TEST_F(ParameterProfilesTest, ChoosingIsOneStepOfUndoWithItsForceModel) {
   EXPECT_EQ(choice().currentText(), QStringLiteral("Stiff"));
 }
 
-TEST_F(ParameterProfilesTest, ReplacingIsAskedAndKeepsTheNote) {
+TEST_F(ParameterProfilesTest, ReplacingAsksFirstAndKeepsTheNote) {
   write("mine.toml", "name = \"Mine\"\nnote = \"by hand\"\noverrides = [\"skin.fp=4\"]\n");
   ASSERT_TRUE(panel.apply_settings({QStringLiteral("liver.k=0.3")}));
   save_as("Mine");
@@ -112,7 +112,7 @@ TEST_F(ParameterProfilesTest, ReplacingIsAskedAndKeepsTheNote) {
   EXPECT_EQ(choice().count(), 2);
 }
 
-TEST_F(ParameterProfilesTest, DeletingIsAskedAndLeavesTheNumbers) {
+TEST_F(ParameterProfilesTest, DeletingAsksFirstAndKeepsTheSettings) {
   ASSERT_TRUE(panel.apply_settings({QStringLiteral("liver.k=0.3")}));
   save_as("Soft");
   click("parameter-profile-delete");
@@ -132,7 +132,7 @@ TEST_F(ParameterProfilesTest, DeletingIsAskedAndLeavesTheNumbers) {
   keep_picture("profiles_deleted.png");
 }
 
-TEST_F(ParameterProfilesTest, ProblemsAreToldAndChangeNothing) {
+TEST_F(ParameterProfilesTest, InvalidProfileShowsTheProblemAndChangesNothing) {
   write("far.toml", "name = \"Far\"\noverrides = [\"liver.mu=0.3\", \"liver.k=700\"]\n");
   ASSERT_TRUE(choose_entry(choice(), QStringLiteral("Far")));
   EXPECT_TRUE(problem().isVisible());
@@ -154,7 +154,7 @@ TEST_F(ParameterProfilesTest, ProblemsAreToldAndChangeNothing) {
   EXPECT_EQ(panel.width(), 340);
 }
 
-TEST_F(ParameterProfilesTest, AFolderThatCannotBeMadeIsTold) {
+TEST_F(ParameterProfilesTest, ReportsAFolderThatCannotBeCreated) {
   std::ofstream(folder / "file") << "no folder";
   panel.set_profile_folder(folder / "file" / "profiles");
   save_as("Soft");
@@ -163,7 +163,7 @@ TEST_F(ParameterProfilesTest, AFolderThatCannotBeMadeIsTold) {
   EXPECT_EQ(choice().count(), 1);
 }
 
-TEST_F(ParameterProfilesTest, NothingIsCutOffAt340ByASaveOrALongName) {
+TEST_F(ParameterProfilesTest, FitsIn340PixelsWithALongProfileName) {
   save_as(std::string(80, 'W').c_str());
   click("parameter-profile-delete");
   QCoreApplication::processEvents();

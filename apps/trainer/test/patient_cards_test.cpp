@@ -51,7 +51,7 @@ struct PatientCardsTest : ::testing::Test {
   QTemporaryDir folder;
 };
 
-TEST_F(PatientCardsTest, TheSelectedCardIsWholeInEverySize) {
+TEST_F(PatientCardsTest, SelectedCardIsFullyVisibleAtEverySize) {
   PatientCards cards;
   cards.resize(640, 480);
   cards.show_patients(made_up(9));
@@ -66,7 +66,7 @@ TEST_F(PatientCardsTest, TheSelectedCardIsWholeInEverySize) {
   }
 }
 
-TEST_F(PatientCardsTest, ShowThePictureOrANeutralOne) {
+TEST_F(PatientCardsTest, ShowTheThumbnailOrAPlaceholder) {
   PatientCards cards;
   cards.resize(640, 480);
   cards.show_patients(made_up(2, write_picture(Qt::magenta)));
@@ -80,7 +80,7 @@ TEST_F(PatientCardsTest, ShowThePictureOrANeutralOne) {
   save(cards, "cards.png");
 }
 
-TEST_F(PatientCardsTest, AHugePictureIsNotRead) {
+TEST_F(PatientCardsTest, IgnoresAnOversizedThumbnail) {
   PatientCards cards;
   cards.resize(640, 480);
   cards.show_patients(made_up(2, write_picture(Qt::magenta, {4000, 10})));
@@ -88,7 +88,7 @@ TEST_F(PatientCardsTest, AHugePictureIsNotRead) {
   EXPECT_NE(QColor(middle_of_picture(cards, 1)), QColor(Qt::magenta));
 }
 
-TEST_F(PatientCardsTest, ADamagedPictureIsANeutralOne) {
+TEST_F(PatientCardsTest, DamagedThumbnailGivesAPlaceholder) {
   const QString file = folder.filePath(QStringLiteral("picture.png"));
   std::ofstream(to_std(file)) << "\x89PNG damaged";
   PatientCards cards;
@@ -154,7 +154,7 @@ TEST_F(PatientCardsTest, ArrowKeysSelectInTheGrid) {
   EXPECT_EQ(cards.chosen()->source, QStringLiteral("lumbar-9"));
 }
 
-TEST_F(PatientCardsTest, KeepTheSelectionAndSpeakInSentences) {
+TEST_F(PatientCardsTest, KeepTheSelectionAndDescribeCardsInSentences) {
   PatientCards cards;
   cards.show_patients(made_up(5));
   ASSERT_TRUE(cards.choose(QStringLiteral("lumbar-3")));
@@ -169,7 +169,7 @@ TEST_F(PatientCardsTest, KeepTheSelectionAndSpeakInSentences) {
   EXPECT_EQ(cards.chosen(), nullptr);
 }
 
-TEST(PatientEntry, EmbeddedPatientsOfATaskComeByTheirDifficulty) {
+TEST(PatientEntry, ListsEmbeddedPatientsByDifficulty) {
   const auto entries = embedded_entries(QStringLiteral("liver-biopsy"), QStringLiteral("Biopsy of a liver lesion"));
   ASSERT_FALSE(entries.empty());
   for (std::size_t n = 0; n < entries.size(); ++n) {
@@ -182,7 +182,7 @@ TEST(PatientEntry, EmbeddedPatientsOfATaskComeByTheirDifficulty) {
   EXPECT_TRUE(embedded_entries(QStringLiteral("no-such-task"), {}).empty());
 }
 
-TEST(PatientEntry, OfAFolderHasItsPicture) {
+TEST(PatientEntry, FolderEntryHasItsThumbnail) {
   const trocar::TemporaryFolder cases;
   auto patient = anatomy::generate_phantom("layers-liver", 1);
   ASSERT_TRUE(patient) << patient.error().text();

@@ -64,7 +64,7 @@ bool is_teal(const QColor& c) {
   return c.green() > 150 && c.blue() > 140 && c.red() < 130;
 }
 
-TEST_F(PatientViewTest, ShowsBonesAndLiverAndPresetsHideThem) {
+TEST_F(PatientViewTest, PresetsHideBonesAndLiver) {
   const QImage all = whole_picture();
   EXPECT_GT(count_of(all, is_ivory), 2000);
   EXPECT_GT(count_of(all, is_liver), 1000);
@@ -103,7 +103,7 @@ TEST_F(PatientViewTest, GuidanceFollowsItsKey) {
   EXPECT_LT(count_of(whole_picture(), is_teal), 10);  // a few pixels of organs have the colour
 }
 
-TEST_F(PatientViewTest, ItsKeysAreItsOwnAgainstTheWindowsShortcuts) {
+TEST_F(PatientViewTest, ViewKeysOverrideWindowShortcuts) {
   const auto is_taken = [&](int key, Qt::KeyboardModifiers modifiers) {
     QKeyEvent event(QEvent::ShortcutOverride, key, modifiers);
     event.ignore();
@@ -133,14 +133,14 @@ TEST_F(PatientViewTest, DoubleClickPicksThePointOnTheSkin) {
   EXPECT_FALSE(picked_P);
 }
 
-TEST_F(PatientViewTest, AnUnchangedPictureIsNotDrawnAgain) {
+TEST_F(PatientViewTest, DoesNotRedrawAnUnchangedScene) {
   whole_picture();
   const std::size_t frames = view.still_frame_times().count() + view.moving_frame_times().count();
   for (int i = 0; i < 5; ++i) view.draw();
   EXPECT_EQ(view.still_frame_times().count() + view.moving_frame_times().count(), frames);
 }
 
-TEST_F(PatientViewTest, AnInterruptedPictureFallsBackToACheapOne) {
+TEST_F(PatientViewTest, InterruptedFullFrameFallsBackToACheapOne) {
   whole_picture();
   if (view.scene().has_gpu()) GTEST_SKIP() << "a graphics card draws every frame in full";
   bool wants_break = true;
@@ -157,7 +157,7 @@ TEST_F(PatientViewTest, AnInterruptedPictureFallsBackToACheapOne) {
   EXPECT_EQ(view.still_frame_times().count(), 2u);
 }
 
-TEST_F(PatientViewTest, APointerThatMovesBreaksOffTheWholePicture) {
+TEST_F(PatientViewTest, PointerMotionInterruptsAFullFrame) {
   whole_picture();
   if (view.scene().has_gpu()) GTEST_SKIP() << "a graphics card draws every frame in full";
   QCursor::setPos(20, 20);
@@ -185,7 +185,7 @@ TEST_F(PatientViewTest, MirroredOutputIsFlippedOnTheScreen) {
   EXPECT_EQ(image, flipped);
 }
 
-TEST_F(PatientViewTest, ShutterGlassesGetASurfaceOfTheirOwnThatHandsItsEventsOn) {
+TEST_F(PatientViewTest, QuadBufferSurfaceForwardsItsEvents) {
   whole_picture();
   const QImage mono = view.grab().toImage();
   scene::StereoOptions options;

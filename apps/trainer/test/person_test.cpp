@@ -23,7 +23,7 @@ struct PersonBarTest : ::testing::Test {
   PersonBar bar;
 };
 
-TEST_F(PersonBarTest, ListsNobodyAndThePeopleWithTheirCourse) {
+TEST_F(PersonBarTest, ListsPeopleWithTheirCourses) {
   const auto& people = find<QComboBox>("person");
   ASSERT_EQ(people.count(), 3);
   EXPECT_EQ(people.itemText(1), "Anna (Course 1)");
@@ -31,7 +31,7 @@ TEST_F(PersonBarTest, ListsNobodyAndThePeopleWithTheirCourse) {
   EXPECT_TRUE(is_listing());
 }
 
-TEST_F(PersonBarTest, ReturnsToTheOneWhoPractisesWhenThePinIsNotEntered) {
+TEST_F(PersonBarTest, CancelledPinRestoresTheCurrentPerson) {
   QStringList requested;
   QObject::connect(&bar, &PersonBar::person_requested, [&](const QString& id) { requested << id; });
   auto& people = find<QComboBox>("person");
@@ -45,7 +45,7 @@ TEST_F(PersonBarTest, ReturnsToTheOneWhoPractisesWhenThePinIsNotEntered) {
   EXPECT_EQ(people.currentText(), "Ben");
 }
 
-TEST_F(PersonBarTest, TakesNameAndPinOfANewPerson) {
+TEST_F(PersonBarTest, AcceptsNameAndPinOfANewPerson) {
   QStringList entered;
   QObject::connect(&bar, &PersonBar::new_person_entered,
                    [&](const QString& name, const QString& pin_text) { entered << name << pin_text; });
@@ -71,7 +71,7 @@ results::CurveAttempt attempt(std::optional<double> score, std::optional<double>
   return one;
 }
 
-TEST(History, ComparesWithOthersAtTheSameAttemptAndWithExperts) {
+TEST(History, ComparesWithPeersAndExperts) {
   results::LearningCurve curve;
   EXPECT_EQ(history_text(curve), "No attempt that counts yet.");
   EXPECT_EQ(comparison_text(curve), "");

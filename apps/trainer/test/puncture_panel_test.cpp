@@ -62,7 +62,7 @@ TEST(PuncturePanel, NoRowOfEventsHasABlankLine) {
   save(shown.panel, "puncture_panel.png");
 }
 
-TEST(PuncturePanel, AimsOnlyWhereThePlanMayBeTold) {
+TEST(PuncturePanel, OffersAimOnlyWhenThePlanIsVisible) {
   ShownPanel shown;
   auto* aim = shown.panel.findChild<QPushButton*>(QStringLiteral("aim"));
   EXPECT_FALSE(aim->isHidden());
@@ -70,7 +70,7 @@ TEST(PuncturePanel, AimsOnlyWhereThePlanMayBeTold) {
   EXPECT_TRUE(aim->isHidden());
 }
 
-TEST(PuncturePanel, TheNewestEventStaysInSightWhenTheCoreIsShown) {
+TEST(PuncturePanel, KeepsTheNewestEventVisibleWhenTheCoreIsShown) {
   ShownPanel shown;
   for (int n = 0; n < 12; ++n)
     shown.panel.add_event(QStringLiteral("%1.0 s  through the liver capsule at 1.5 N").arg(n));
@@ -85,7 +85,7 @@ TEST(PuncturePanel, TheNewestEventStaysInSightWhenTheCoreIsShown) {
   EXPECT_TRUE(shown.events().viewport()->rect().contains(shown.place_of(12)));
 }
 
-TEST(PuncturePanel, AsksInThePlaceOfItsButtonsAndStaysAsHigh) {
+TEST(PuncturePanel, ReplacesItsButtonsByTheQuestionWithoutResizing) {
   ShownPanel shown;
   auto& question = *shown.panel.findChild<QWidget*>(QStringLiteral("question"));
   auto& end = *shown.panel.findChild<QPushButton*>(QStringLiteral("end-attempt"));
@@ -136,7 +136,7 @@ Widget& part(const QWidget& parent, const char* name) {
   return *found;
 }
 
-TEST(PunctureSteps, TheCurrentStepTellsWhatItLacksAndWhy) {
+TEST(PunctureSteps, ShowsWhatTheCurrentStepStillNeeds) {
   ShownPanel shown;
   StepList& steps = shown.panel.steps();
   EXPECT_TRUE(steps.isHidden()) << "an exam has no steps";
@@ -166,7 +166,7 @@ TEST(PunctureSteps, AssistedShowsTitlesAndTicksOnly) {
   EXPECT_TRUE(part<QLabel>(steps, "step-3").isVisible());
 }
 
-TEST(PunctureSteps, AStepThatWasDoneIsConfirmedForAWhile) {
+TEST(PunctureSteps, ConfirmsACompletedStepBriefly) {
   ShownPanel shown;
   StepList& steps = shown.panel.steps();
   const QLabel& heading = part<QLabel>(steps, "steps-heading");
@@ -191,7 +191,7 @@ TEST(PunctureSteps, OnlyADoneStepCanBeRepeated) {
   EXPECT_EQ(repeated, std::vector<std::size_t>{1});
 }
 
-TEST(PunctureSteps, FoldedItShowsTheNeighboursOfTheCurrentStep) {
+TEST(PunctureSteps, FoldedListShowsNeighboursOfTheCurrentStep) {
   ShownPanel shown;
   StepList& steps = shown.panel.steps();
   shown.panel.resize(238, 560);
@@ -231,7 +231,7 @@ TEST(PunctureActions, ATaskShowsItsActionsOnly) {
   EXPECT_EQ(actions_of({}, chiba), std::vector{Action::kAspirate});
 }
 
-TEST(PunctureActions, ASecondPressUndoesAndTheWireGoesFurther) {
+TEST(PunctureActions, SecondPressReversesAnActionOrAdvancesTheWire) {
   ActionState state;
   EXPECT_EQ(request_of(Action::kStylet, state).kind, tasks::ActionKind::kDrawStylet);
   EXPECT_EQ(request_of(Action::kBreath, state).kind, tasks::ActionKind::kHoldBreath);
@@ -243,7 +243,7 @@ TEST(PunctureActions, ASecondPressUndoesAndTheWireGoesFurther) {
   EXPECT_EQ(request_of(Action::kWire, state).amount, 100.0);
 }
 
-TEST(PunctureActions, AStyletInTheNeedleBlocksSyringeAndWire) {
+TEST(PunctureActions, StyletInTheNeedleBlocksSyringeAndWire) {
   tasks::Needle chiba;
   chiba.stylet_diameter_mm = 0.363;
   ActionState state{.can_act = true};
@@ -256,7 +256,7 @@ TEST(PunctureActions, AStyletInTheNeedleBlocksSyringeAndWire) {
   EXPECT_FALSE(why_not(Action::kAnaesthetic, state, chiba).isEmpty()) << "the attempt does not run";
 }
 
-TEST(PunctureActions, AGunIsLoadedWhenEmptyOutsideOrThroughACoaxialNeedle) {
+TEST(PunctureActions, GunLoadsOutsideOrThroughACoaxialNeedle) {
   tasks::Needle gun;
   gun.is_biopsy = true;
   const auto reason = [&](bool is_loaded, bool is_outside) {
@@ -270,7 +270,7 @@ TEST(PunctureActions, AGunIsLoadedWhenEmptyOutsideOrThroughACoaxialNeedle) {
   EXPECT_EQ(reason(false, false), "");
 }
 
-TEST(PunctureActions, ButtonsTellTheStateAndRequest) {
+TEST(PunctureActions, ButtonsShowTheStateAndEmitRequests) {
   ShownPanel shown;
   std::vector<Action> requested;
   QObject::connect(&shown.panel, &PuncturePanel::action_requested, [&](Action a) { requested.push_back(a); });
@@ -298,7 +298,7 @@ TEST(PunctureActions, ButtonsTellTheStateAndRequest) {
 }
 
 /// As wide as in the window, beside the scroll bar of a low one.
-TEST(PunctureActions, NoButtonIsCutOff) {
+TEST(PunctureActions, FitsEveryButton) {
   ShownPanel shown;
   shown.panel.begin(8.0, true, false, {std::begin(kTraineeActions), std::end(kTraineeActions)});
   PunctureFigures figures;

@@ -10,7 +10,7 @@ TEST(ScreenScale, IsOneOnUsualScreens) {
     EXPECT_EQ(scale_of({size, 96.0, 96.0}), 1.0) << size.width();
 }
 
-TEST(ScreenScale, IsTwoOnAScreenOfFourThousandColumns) {
+TEST(ScreenScale, IsTwoOnA4kScreen) {
   EXPECT_EQ(scale_of({{3840, 2160}, 96.0, 96.0}), 2.0);
   EXPECT_EQ(scale_of({{3840, 2160}, 96.0, 1000.0}), 2.0);  // a wrong size of the screen
   EXPECT_EQ(scale_of({{3840, 2160}, 96.0, 0.0}), 2.0);

@@ -36,14 +36,14 @@ TEST(Script, StepsCommentsAndQuotationsAreRead) {
   EXPECT_EQ((*steps)[2].arguments[1], QStringLiteral("-3"));
 }
 
-TEST(Script, ColoursAreNoComments) {
+TEST(Script, ColourCodesAreNotComments) {
   const auto steps = parse_script(QStringLiteral("expect-pixels view #54d1c4 12 0.1  # the path\n#all of it\n"), {});
   ASSERT_TRUE(steps);
   ASSERT_EQ(steps->size(), 1u);
   EXPECT_EQ(steps->front().arguments.size(), 4);
 }
 
-TEST(Script, MistakesNameTheirLine) {
+TEST(Script, ErrorsNameTheirLine) {
   EXPECT_NE(error_of("click start\nclock start\n").find("steps.txt:2"), std::string::npos);
   EXPECT_NE(error_of("click\n").find("0 arguments"), std::string::npos);
   EXPECT_NE(error_of("wait soon\n").find("is not a number"), std::string::npos);
@@ -100,7 +100,7 @@ TEST_F(SmallStage, ClicksKeysAndValuesReachTheWidgets) {
   EXPECT_EQ(pushed, 3);
 }
 
-TEST_F(SmallStage, EntriesAndNumbersOfAMenuAreReachedWhileItIsClosed) {
+TEST_F(SmallStage, ReachesMenuEntriesWhileTheMenuIsClosed) {
   auto* menu = new QMenu(&window);
   auto* entry = menu->addAction(QStringLiteral("Entry"), &window, [this] { ++pushed; });
   entry->setObjectName(QStringLiteral("menu-entry"));
@@ -116,12 +116,12 @@ TEST_F(SmallStage, EntriesAndNumbersOfAMenuAreReachedWhileItIsClosed) {
   EXPECT_TRUE(play("click menu-entry\n").contains(QStringLiteral("disabled")));
 }
 
-TEST_F(SmallStage, WheelGoesOnUntilAFactHolds) {
+TEST_F(SmallStage, TurnsTheWheelUntilAConditionHolds) {
   EXPECT_EQ(play("wheel-until slide 50 value >= 30 within 10\n"), QString());
   EXPECT_GE(slider->value(), 30);
 }
 
-TEST_F(SmallStage, AWindowThatIsBusyHasMoreTimeAndGetsNoEventTooMany) {
+TEST_F(SmallStage, ExtendsTheTimeoutOfABusyWindow) {
   // Each event takes the window 0.3 s: 20 of them are due in a second, and 8 fit into the 2.4 s that they take.
   QObject::connect(slider, &QSlider::valueChanged, slider, [] { QThread::msleep(300); });
   slider->setSingleStep(1);
@@ -130,7 +130,7 @@ TEST_F(SmallStage, AWindowThatIsBusyHasMoreTimeAndGetsNoEventTooMany) {
   EXPECT_LE(slider->value(), 26) << "no notch after the condition held";
 }
 
-TEST_F(SmallStage, WhatIsNotThereYetIsWaitedFor) {
+TEST_F(SmallStage, WaitsForAWidgetToAppear) {
   button->setEnabled(false);
   slider->hide();
   QTimer::singleShot(100, &window, [this] { button->setEnabled(true); });
@@ -141,7 +141,7 @@ TEST_F(SmallStage, WhatIsNotThereYetIsWaitedFor) {
   EXPECT_EQ(pushed, 1);
 }
 
-TEST_F(SmallStage, WhatFailsNamesItsLine) {
+TEST_F(SmallStage, FailureNamesItsLine) {
   default_timeout_s = 0.05;
   EXPECT_TRUE(play("click push\nexpect pushed is 7\n").startsWith(QStringLiteral("s line 2:")));
   EXPECT_TRUE(play("click nothing\n").contains(QStringLiteral("nothing")));
@@ -151,7 +151,7 @@ TEST_F(SmallStage, WhatFailsNamesItsLine) {
   EXPECT_TRUE(play("click push\n").contains(QStringLiteral("disabled")));
 }
 
-TEST(SharePixels, CountsWhatIsNearAColour) {
+TEST(SharePixels, CountsPixelsNearAColour) {
   QImage image(10, 10, QImage::Format_RGB32);
   image.fill(QColor(10, 20, 30));
   for (int x = 0; x < 10; ++x) image.setPixelColor(x, 0, QColor(200, 0, 0));

@@ -44,7 +44,7 @@ Segment expert_path() {
   return coarse_abdomen()->paths.front().line_P;
 }
 
-TEST(SliceView, LeadsFromPixelsToThePatientAndBack) {
+TEST(SliceView, MapsPixelsToThePatientAndBack) {
   for (const SliceKind kind : {SliceKind::kAxial, SliceKind::kCoronal, SliceKind::kSagittal, SliceKind::kAlongNeedle,
                                SliceKind::kAlongNeedleTurned, SliceKind::kAcrossNeedle}) {
     ShownSlice shown(kind);
@@ -100,7 +100,7 @@ TEST(SliceView, MovesTheCrossHairsToTheMouse) {
   EXPECT_TRUE(has_red);
 }
 
-TEST(SliceView, HasNoToolTipOverThePicture) {
+TEST(SliceView, HasNoToolTipOverTheImage) {
   ShownSlice shown(SliceKind::kAxial);
   const auto asked_at = [&](const QPoint& at) {
     QHelpEvent help(QEvent::ToolTip, at, shown.view.mapToGlobal(at));
@@ -203,7 +203,7 @@ TEST(SliceView, DrawsTheNeedleWhereItLies) {
   EXPECT_GT(kept, 20);
 }
 
-TEST(SliceView, NeedlePlanesHoldTheShaftAndTheTipPointsDown) {
+TEST(SliceView, NeedlePlanesContainTheShaftWithTheTipDown) {
   const Segment path = expert_path();
   for (const SliceKind kind : {SliceKind::kAlongNeedle, SliceKind::kAlongNeedleTurned}) {
     ShownSlice shown(kind);
@@ -218,7 +218,7 @@ TEST(SliceView, NeedlePlanesHoldTheShaftAndTheTipPointsDown) {
   }
 }
 
-TEST(SliceView, ShowsAsMuchOfThePlanAsGuidanceAllows) {
+TEST(SliceView, ShowsThePlanPerGuidanceLevel) {
   ShownSlice shown(SliceKind::kAxial);
   const Segment path = expert_path();
   shown.view.set_focus(0.5 * (path.a + path.b) + Vec3(0.0, 40.0, 0.0));  // the cross-hairs beside all that is looked at

@@ -32,7 +32,7 @@ struct StartPageTest : ::testing::Test {
   QTemporaryDir folder;
 };
 
-TEST_F(StartPageTest, BeginsWithTheLiverBiopsyOfTheEmbeddedPatient) {
+TEST_F(StartPageTest, DefaultsToLiverBiopsyOfTheEmbeddedPatient) {
   const StartPage page;
   EXPECT_EQ(page.choice().task, "liver-biopsy");
   EXPECT_EQ(page.choice().patient, "abdomen");
@@ -40,7 +40,7 @@ TEST_F(StartPageTest, BeginsWithTheLiverBiopsyOfTheEmbeddedPatient) {
   EXPECT_TRUE(page.findChild<QPushButton*>(QStringLiteral("start"))->isEnabled());
 }
 
-TEST_F(StartPageTest, RemembersWhatWasStarted) {
+TEST_F(StartPageTest, RemembersTheLastStartedChoice) {
   TrainerChoice wanted;
   wanted.difficulty = Difficulty::kAssisted;
   wanted.force_model = "proxy";
@@ -56,7 +56,7 @@ TEST_F(StartPageTest, RemembersWhatWasStarted) {
   EXPECT_EQ(again.choice().needle_device, "gamepad");
 }
 
-TEST_F(StartPageTest, AnExamTakesTheTasksOwnNeedleAndForces) {
+TEST_F(StartPageTest, ExamUsesTheTasksNeedleAndForceModel) {
   TrainerChoice wanted;
   wanted.needle = "biopsy-16g";
   wanted.force_model = "proxy";
@@ -103,7 +103,7 @@ TEST_F(StartPageTest, AnExamHasADifficultyAndANumber) {
   EXPECT_TRUE(exam_text(nobody).contains(QStringLiteral("name nobody")));
 }
 
-TEST_F(StartPageTest, AnExamDoesNotTakeTheSeedOfTheCommandLine) {
+TEST_F(StartPageTest, ExamIgnoresTheSeedOfTheCommandLine) {
   TrainerChoice wanted;
   wanted.patient_seed = 77;
   StartPage page;
@@ -171,7 +171,7 @@ TEST_F(StartPageTest, OffersNeedlesThatFitTheTask) {
     EXPECT_TRUE(box->itemText(row).contains(QStringLiteral("biopsy"))) << box->itemText(row).toStdString();
 }
 
-TEST_F(StartPageTest, AFolderIsListedByTheNameOfItsCase) {
+TEST_F(StartPageTest, ListsAFolderByItsCaseName) {
   const trocar::TemporaryFolder cases;
   const auto patient = anatomy::generate_phantom("layers-liver", 1);
   ASSERT_TRUE(patient) << patient.error().text();
@@ -202,7 +202,7 @@ TEST_F(StartPageTest, OpenedFoldersStayInTheList) {
             1);
 }
 
-TEST_F(StartPageTest, OffersWhatACrashHasCutOff) {
+TEST_F(StartPageTest, OffersToRecoverACrashedAttempt) {
   StartPage page;
   page.resize(1280, 700);
   page.offer_recovery(QStringLiteral("An attempt of 10:31 was cut off."));
@@ -212,7 +212,7 @@ TEST_F(StartPageTest, OffersWhatACrashHasCutOff) {
   EXPECT_FALSE(page.findChild<QPushButton*>(QStringLiteral("recover"))->isVisible());
 }
 
-TEST_F(StartPageTest, AnExamKeepsTheNeedleAndForcesThatWereChosenBefore) {
+TEST_F(StartPageTest, ExamKeepsThePreviousPracticeChoice) {
   TrainerChoice wanted;
   wanted.needle = "biopsy-16g";
   wanted.force_model = "proxy";
@@ -231,7 +231,7 @@ TEST_F(StartPageTest, AnExamKeepsTheNeedleAndForcesThatWereChosenBefore) {
   EXPECT_EQ(guided.force_model, "proxy");
 }
 
-TEST_F(StartPageTest, OffersTheFirstStepsUntilTheyAreDoneOrSkipped) {
+TEST_F(StartPageTest, OffersTheTutorialUntilDoneOrSkipped) {
   {
     StartPage page;
     page.show();
@@ -257,7 +257,7 @@ TEST_F(StartPageTest, OffersTheFirstStepsUntilTheyAreDoneOrSkipped) {
   EXPECT_EQ(started, 1) << "they stay at hand";
 }
 
-TEST_F(StartPageTest, EnterStartsExceptWhereSomebodyTypes) {
+TEST_F(StartPageTest, EnterStartsUnlessATextFieldHasFocus) {
   StartPage page;
   page.show();
   QCoreApplication::processEvents();

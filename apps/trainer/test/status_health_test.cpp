@@ -21,12 +21,12 @@ HealthInput running() {
   return input;
 }
 
-TEST(Health, IsGoodWhenForcesAndPicturesAreInTime) {
+TEST(Health, IsGoodWhenForcesAndFramesAreOnTime) {
   EXPECT_EQ(assess_health(running()).health, Health::kGood);
   EXPECT_TRUE(assess_health(running()).reason.isEmpty());
 }
 
-TEST(Health, IsOffWithoutAnAttemptAndStartsBeforeTheServersAreConnected) {
+TEST(Health, IsOffWithoutAttemptAndStartingUntilConnected) {
   HealthInput input = running();
   input.has_started = false;
   input.servers[0].is_connected = false;
@@ -38,7 +38,7 @@ TEST(Health, IsOffWithoutAnAttemptAndStartsBeforeTheServersAreConnected) {
   EXPECT_EQ(assess_health({}).health, Health::kOff);
 }
 
-TEST(Health, SaysWhatBringsALostServerBack) {
+TEST(Health, StatesHowALostServerReturns) {
   HealthInput input = running();
   input.servers[0].is_connected = false;
   EXPECT_TRUE(assess_health(input).reason.contains(QStringLiteral("is being restarted")));
@@ -46,7 +46,7 @@ TEST(Health, SaysWhatBringsALostServerBack) {
   EXPECT_TRUE(assess_health(input).reason.contains(QStringLiteral("when you resume the forces")));
 }
 
-TEST(Health, IsSlowFromTheLimitsOnAndNamesTheTool) {
+TEST(Health, IsSlowBeyondTheLimitsAndNamesTheTool) {
   const HealthLimits limits;
   HealthInput input = running();
   input.servers[1].served = limits.least_served;
@@ -78,7 +78,7 @@ TEST(Health, TheWorstCauseDecides) {
   EXPECT_EQ(assess_health(input).health, Health::kInterrupted);
 }
 
-TEST(Health, LaterFiguresCanOnlyGetWorse) {
+TEST(Health, AddedFiguresNeverImproveHealth) {
   int last = static_cast<int>(Health::kGood);
   for (double served = 1.0; served > 0.0; served -= 0.001) {
     HealthInput input = running();

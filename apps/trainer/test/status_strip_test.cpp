@@ -24,7 +24,7 @@ ServerLine line(const char* tool) {
   return result;
 }
 
-TEST(StatusStrip, TheForceStopIsWholeAtEveryWidth) {
+TEST(StatusStrip, ForceStopIsFullyVisibleAtEveryWidth) {
   StatusStrip strip;
   strip.show();
   auto* stop = strip.findChild<QPushButton*>(QStringLiteral("force-stop"));
@@ -43,7 +43,7 @@ TEST(StatusStrip, TheForceStopIsWholeAtEveryWidth) {
   }
 }
 
-TEST(StatusStrip, ItsButtonSaysWhatAPressDoes) {
+TEST(StatusStrip, ButtonTextNamesItsEffect) {
   StatusStrip strip;
   auto* stop = strip.findChild<QPushButton*>(QStringLiteral("force-stop"));
   int presses = 0;
@@ -59,7 +59,7 @@ TEST(StatusStrip, ItsButtonSaysWhatAPressDoes) {
   EXPECT_EQ(presses, 2);
 }
 
-TEST(StatusStrip, TellsTheStateInWordsAndBySymbol) {
+TEST(StatusStrip, ShowsTheStateAsTextAndSymbol) {
   StatusStrip strip;
   auto* indicator = strip.findChild<QToolButton*>(QStringLiteral("status-health"));
   auto* reason = strip.findChild<QLabel*>(QStringLiteral("status-reason"));
@@ -93,7 +93,7 @@ TEST(StatusStrip, TellsTheStateInWordsAndBySymbol) {
   EXPECT_EQ(indicator->text(), QStringLiteral("Forces off"));
 }
 
-TEST(StatusStrip, AClickShowsTheFiguresAboveTheBarWithoutTakingTheKeyboard) {
+TEST(StatusStrip, ClickShowsFiguresAboveTheBarWithoutTakingFocus) {
   QWidget window;
   window.resize(900, 500);
   StatusStrip strip(&window);

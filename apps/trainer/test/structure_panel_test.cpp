@@ -74,7 +74,7 @@ TEST_F(StructurePanelTest, PresetsMoveTheSliders) {
   EXPECT_GT(opacity("skin"), 0.0);
 }
 
-TEST_F(StructurePanelTest, OpacitiesAreUndoneAndDoneAgain) {
+TEST_F(StructurePanelTest, UndoesAndRedoesOpacities) {
   auto& undo = find<QToolButton>("structure-undo");
   auto& redo = find<QToolButton>("structure-redo");
   EXPECT_FALSE(undo.isEnabled());
@@ -106,7 +106,7 @@ TEST_F(StructurePanelTest, OpacitiesAreUndoneAndDoneAgain) {
   EXPECT_FALSE(redo.isEnabled());
 }
 
-TEST_F(StructurePanelTest, UndoHasItsKeysInThePanel) {
+TEST_F(StructurePanelTest, UndoKeysWorkInThePanel) {
   find<QSlider>("structure-opacity-kidney-left").setValue(40);
   panel->activateWindow();
   find<QSlider>("structure-opacity-kidney-left").setFocus();
@@ -117,7 +117,7 @@ TEST_F(StructurePanelTest, UndoHasItsKeysInThePanel) {
   EXPECT_DOUBLE_EQ(opacity("kidney_left"), 0.4);
 }
 
-TEST_F(StructurePanelTest, AnotherPatientHasNothingToUndo) {
+TEST_F(StructurePanelTest, ClearsUndoForAnotherPatient) {
   find<QSlider>("structure-opacity-kidney-left").setValue(40);
   panel->rebuild();
   EXPECT_FALSE(find<QToolButton>("structure-undo").isEnabled());

@@ -19,7 +19,7 @@ double contrast(const QColor& a, const QColor& b) {
   return std::max(x, y) / std::min(x, y);
 }
 
-TEST(Theme, TextCanBeReadOnEveryGround) {
+TEST(Theme, TextIsLegibleOnEveryBackground) {
   const Theme& t = theme();
   for (const QColor& ground : {t.ground, t.view, t.panel, t.raised})
     for (const QColor& text : {t.text, t.dim, t.accent, t.good, t.warning, t.bad}) {

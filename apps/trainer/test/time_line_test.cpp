@@ -56,7 +56,7 @@ TEST(TimeLine, PlaysAtItsSpeedAndStopsAtTheEnd) {
   EXPECT_EQ(shown.line.time_s(), 0.0);  // From the beginning.
 }
 
-TEST(TimeLine, GoesToEventsAndTheWorstMoment) {
+TEST(TimeLine, JumpsToEventsAndTheWorstMoment) {
   ShownTimeLine shown;
   std::vector<double> visited_s;
   for (int n = 0; n < 5; ++n) {
@@ -72,7 +72,7 @@ TEST(TimeLine, GoesToEventsAndTheWorstMoment) {
   EXPECT_FALSE(shown.line.is_playing());
 }
 
-TEST(TimeLine, StepsByKeysInsideItsEnds) {
+TEST(TimeLine, StepsByKeysWithinItsRange) {
   ShownTimeLine shown;
   press_key(shown.line, Qt::Key_Left);
   EXPECT_TRUE(shown.times_s.empty());
@@ -112,7 +112,7 @@ TEST(TimeLine, ShowsPhasesAndMarksWhereTheyAre) {
   EXPECT_EQ(color(15.5, 7), theme().target);
 }
 
-TEST(TimeLine, ARiskThatWasHitIsSeenOverTheWorstMoment) {
+TEST(TimeLine, DrawsRiskMarksOverTheWorstMoment) {
   ShownTimeLine shown;
   shown.line.set_events({{4.0, "touched: lung", TimeMark::kRisk},
                          {8.0, "touched: rib", TimeMark::kRisk},
@@ -137,7 +137,7 @@ TEST(TimeLine, ARiskThatWasHitIsSeenOverTheWorstMoment) {
   EXPECT_LT(reddish(12.0), 10);
 }
 
-TEST(TimeLine, OffersTheWorstMomentOnlyWhereThereIsOne) {
+TEST(TimeLine, OffersTheWorstMomentOnlyIfItExists) {
   ShownTimeLine shown;
   EXPECT_TRUE(shown.line.findChild<QToolButton*>("time-worst")->isVisible());
   shown.line.set_events({});
@@ -147,7 +147,7 @@ TEST(TimeLine, OffersTheWorstMomentOnlyWhereThereIsOne) {
   EXPECT_EQ(shown.line.time_s(), 0.0);
 }
 
-TEST(TimeLine, StandsStillWithoutASession) {
+TEST(TimeLine, DoesNotPlayWithoutASession) {
   TimeLine line;
   line.set_playing(true);
   EXPECT_FALSE(line.is_playing());
@@ -155,7 +155,7 @@ TEST(TimeLine, StandsStillWithoutASession) {
   EXPECT_FALSE(line.grab().isNull());
 }
 
-TEST(TimeLine, CanBeLookedAt) {
+TEST(TimeLine, RendersToAnImage) {
   ShownTimeLine shown;
   shown.line.set_time(9.2);
   save(shown.line, "time_line.png");

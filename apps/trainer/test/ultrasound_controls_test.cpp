@@ -85,7 +85,7 @@ std::shared_ptr<ultrasound::PanoramaOnDemand> panorama_at(const Pose& X_PT) {
   });
 }
 
-TEST_F(UltrasoundControlsTest, EngineIsOfferedOnlyForAPatientWithAPanorama) {
+TEST_F(UltrasoundControlsTest, OffersTheEngineOnlyWithAPanorama) {
   UltrasoundView view;
   open(view, "aorta", {320, 280});
   UltrasoundControls controls(view);

@@ -4,7 +4,7 @@
 namespace trocar::trainer {
 namespace {
 
-TEST_F(UltrasoundViewTest, TheThrowIsDrawnWhereItIsInThePlane) {
+TEST_F(UltrasoundViewTest, DrawsTheThrowWhereItLiesInThePlane) {
   UltrasoundView view;
   open(view, "liver-lesion", {900, 700});
   ASSERT_TRUE(settle(view));

@@ -30,7 +30,7 @@ int coloured(const QImage& image, const QRect& within) {
   return count;
 }
 
-TEST_F(UltrasoundViewTest, FanIsBrightInTissueAndBlackBeside) {
+TEST_F(UltrasoundViewTest, FanIsBrightInTissueAndBlackOutside) {
   for (const QSize size : {QSize(480, 420), QSize(900, 700), QSize(240, 180)}) {
     UltrasoundView view;
     open(view, "liver-right-kidney", size);
@@ -70,7 +70,7 @@ double brightness_along(const QImage& image, const UltrasoundView& view, const s
   return sum / kPlaces;
 }
 
-TEST_F(UltrasoundViewTest, NeedleIsSeenInThePlaneAlone) {
+TEST_F(UltrasoundViewTest, ShowsTheNeedleOnlyInThePlane) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {900, 700});
   const std::vector<Vec3> within = needle_in_plane(X_PT_, 0.0);
@@ -98,7 +98,7 @@ double column_of_change(const QImage& before, const QImage& after, const QRect& 
   return weighted / (sum * within.width());
 }
 
-TEST_F(UltrasoundViewTest, TransverseViewHasThePatientsRightOnTheLeftLikeAnAxialSlice) {
+TEST_F(UltrasoundViewTest, TransverseViewShowsThePatientsRightOnTheLeft) {
   UltrasoundView view;
   open(view, "aorta-transverse", {900, 700});
   ASSERT_LT(X_PT_.R().col(0).x(), -0.9);  // transverse, the marked side towards the patient's right
@@ -139,7 +139,7 @@ TEST_F(UltrasoundViewTest, GuideShowsWhereTheNeedleGoes) {
   EXPECT_FALSE(is_marked(look(view, "axis_not_offered")));
 }
 
-TEST_F(UltrasoundViewTest, CaliperGivesTheKnownDistance) {
+TEST_F(UltrasoundViewTest, CaliperMeasuresAKnownDistance) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {900, 700});
   ASSERT_TRUE(settle(view));
@@ -198,7 +198,7 @@ TEST_F(UltrasoundViewTest, CaliperGivesTheKnownDistance) {
   EXPECT_EQ(view.measuring_tool(), MeasuringTool::kNone);
 }
 
-TEST_F(UltrasoundViewTest, CaliperEndsArePickedUpAndMoved) {
+TEST_F(UltrasoundViewTest, MovesCaliperEnds) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {900, 700});
   ASSERT_TRUE(settle(view));
@@ -258,7 +258,7 @@ TEST_F(UltrasoundViewTest, CaliperEndsArePickedUpAndMoved) {
   EXPECT_FALSE(view.chosen_measurement());
 }
 
-TEST_F(UltrasoundViewTest, FrozenPictureStaysAndIsStepped) {
+TEST_F(UltrasoundViewTest, FrozenImageStaysAndStepsThroughTheCineLoop) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {480, 420});
   ASSERT_TRUE(settle(view));
@@ -304,7 +304,7 @@ TEST_F(UltrasoundViewTest, DopplerColoursTheVessel) {
   }
 }
 
-TEST_F(UltrasoundViewTest, RollingPicturesEndWithAWholeOne) {
+TEST_F(UltrasoundViewTest, RollingUpdateEndsWithAFullFrame) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {480, 420});
   view.change_settings([](UltrasoundSettings& s) { s.is_rolling = true; });
@@ -352,7 +352,7 @@ TEST_F(UltrasoundViewTest, ColourBoxIsDraggedWithTheMouse) {
   EXPECT_EQ(view.settings().doppler.box.first_line, moved.first_line);
 }
 
-TEST_F(UltrasoundViewTest, SaysWhenTheFaceHasLeftTheSkin) {
+TEST_F(UltrasoundViewTest, WarnsWhenTheFaceHasNoSkinContact) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {480, 420});
   view.set_transducer_pose(X_PT_ * Pose::translation({0.0, -40.0, 0.0}));
@@ -368,7 +368,7 @@ TEST_F(UltrasoundViewTest, SaysWhenTheFaceHasLeftTheSkin) {
   EXPECT_GT(warning, 20);
 }
 
-TEST_F(UltrasoundViewTest, NothingLiesOnTheScan) {
+TEST_F(UltrasoundViewTest, OverlaysDoNotCoverTheScan) {
   // Of every transducer in small and large views: caption, bars and scale are beside it.
   for (const ultrasound::Transducer& probe : abdomen().transducers)
     for (const QSize size : {QSize(240, 180), QSize(480, 420), QSize(900, 700), QSize(700, 300), QSize(300, 800)}) {
@@ -391,7 +391,7 @@ TEST_F(UltrasoundViewTest, NothingLiesOnTheScan) {
     }
 }
 
-TEST_F(UltrasoundViewTest, TheWholeMarkerIsInTheView) {
+TEST_F(UltrasoundViewTest, OrientationMarkerIsFullyVisible) {
   for (const char* probe : {"L14-5", "P4-2", "C5-2"})
     for (const QSize size : {QSize(480, 420), QSize(240, 180), QSize(300, 800)})
       for (const bool is_mirrored : {true, false}) {

@@ -13,7 +13,7 @@ ultrasound::RasterGeometry some_raster(bool is_mirrored) {
   return {400, 300, 0.5, ultrasound::Vec2(is_mirrored ? 100.0 : -100.0, 0.0), is_mirrored};
 }
 
-TEST(PictureZoom, ThePointUnderThePointerStays) {
+TEST(PictureZoom, KeepsThePointUnderThePointer) {
   for (const bool is_mirrored : {false, true}) {
     const ultrasound::RasterGeometry raster = some_raster(is_mirrored);
     const QRectF target(20.0, 10.0, 800.0, 620.0);
@@ -46,7 +46,7 @@ TEST(PictureZoom, TheAreaIsAlwaysFilled) {
     }
 }
 
-TEST_F(UltrasoundViewTest, ControlAndWheelMagnifyAboutThePointerAndZeroResets) {
+TEST_F(UltrasoundViewTest, CtrlWheelZoomsAtThePointerAndZeroResets) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {900, 700});
   ASSERT_TRUE(settle(view));
@@ -65,7 +65,7 @@ TEST_F(UltrasoundViewTest, ControlAndWheelMagnifyAboutThePointerAndZeroResets) {
   EXPECT_EQ(view.zoom(), PictureZoom());
 }
 
-TEST_F(UltrasoundViewTest, AMeasuredDistanceDoesNotDependOnTheZoom) {
+TEST_F(UltrasoundViewTest, MeasuredDistanceIsIndependentOfTheZoom) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {900, 700});
   ASSERT_TRUE(settle(view));
@@ -81,7 +81,7 @@ TEST_F(UltrasoundViewTest, AMeasuredDistanceDoesNotDependOnTheZoom) {
   }
 }
 
-TEST_F(UltrasoundViewTest, TheResultFollowsThePointerWhileACaliperIsDrawn) {
+TEST_F(UltrasoundViewTest, UpdatesTheResultWhileACaliperIsDrawn) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {900, 700});
   ASSERT_TRUE(settle(view));
@@ -106,7 +106,7 @@ TEST_F(UltrasoundViewTest, TheResultFollowsThePointerWhileACaliperIsDrawn) {
   EXPECT_TRUE(view.live_result().isEmpty()) << "one arm is no angle";
 }
 
-TEST_F(UltrasoundViewTest, TheCaptionHasTheIndicesOfTheSettingsInUse) {
+TEST_F(UltrasoundViewTest, CaptionShowsMechanicalAndThermalIndices) {
   UltrasoundView view;
   open(view, "liver-right-kidney", {900, 700});
   ASSERT_TRUE(settle(view));

@@ -74,7 +74,7 @@ struct ViewRegistryTest : ::testing::Test {
   Received received_;
 };
 
-TEST_F(ViewRegistryTest, ARegisteredViewIsInTheMenuWithItsTitleAndShortcut) {
+TEST_F(ViewRegistryTest, MenuListsARegisteredViewWithItsShortcut) {
   Workspace workspace(with_dummy());
   QMenu menu;
   workspace.fill_menu(menu);
@@ -84,7 +84,7 @@ TEST_F(ViewRegistryTest, ARegisteredViewIsInTheMenuWithItsTitleAndShortcut) {
   EXPECT_EQ(action->shortcut(), key_of(Action::kXrayView));
 }
 
-TEST_F(ViewRegistryTest, ARegisteredViewHasItsPlacesInLayouts) {
+TEST_F(ViewRegistryTest, PlacesARegisteredViewInLayouts) {
   Workspace workspace(with_dummy());
   workspace.resize(1000, 700);
   workspace.show();
@@ -97,7 +97,7 @@ TEST_F(ViewRegistryTest, ARegisteredViewHasItsPlacesInLayouts) {
   EXPECT_EQ(workspace.layouts().size(), layouts_of(standard_views()).size() + 1);
 }
 
-TEST_F(ViewRegistryTest, ARegisteredViewReceivesTheCaseTheToolsAndEachFrame) {
+TEST_F(ViewRegistryTest, RegisteredViewReceivesCaseToolsAndFrames) {
   Workspace workspace(with_dummy());
   workspace.show_case(open_abdomen());
   workspace.show_help(Difficulty::kGuided);
@@ -147,7 +147,7 @@ TEST_F(ViewRegistryTest, StoredLayoutsStayValidWhenAViewIsAdded) {
   EXPECT_TRUE(is_visible(after, "dock-dummy"));
 }
 
-TEST_F(ViewRegistryTest, AWidgetIsFoundByIdAndType) {
+TEST_F(ViewRegistryTest, FindsAWidgetByIdAndType) {
   const Workspace workspace(with_dummy());
   EXPECT_NE(workspace.find<PatientView>("3d"), nullptr);
   EXPECT_NE(workspace.find<PatientView>("3d"), workspace.find<PatientView>("side"));
@@ -155,7 +155,7 @@ TEST_F(ViewRegistryTest, AWidgetIsFoundByIdAndType) {
   EXPECT_EQ(workspace.find<QLabel>("nothing"), nullptr);
 }
 
-TEST(ViewRegistryDeathTest, AnIdIsRegisteredOnce) {
+TEST(ViewRegistryDeathTest, RefusesADuplicateId) {
   ViewRegistry registry = standard_views();
   EXPECT_DEATH(registry.add(registry.views().front()), "");
 }

@@ -26,7 +26,7 @@ class WindowLanguage : public ::testing::Test {
   void TearDown() override { EXPECT_TRUE(speak(*QCoreApplication::instance(), QStringLiteral("en"))); }
 };
 
-TEST_F(WindowLanguage, IsThatOfTextsTablesAndNumbers) {
+TEST_F(WindowLanguage, CoversTextsTablesAndNumbers) {
   EXPECT_EQ(QCoreApplication::translate("trocar::trainer::MainWindow", "Views"), QStringLiteral("Ansichten"));
   EXPECT_EQ(QCoreApplication::translate("trocar::trainer::StartPage", "Guided"), QStringLiteral("Angeleitet"));
   EXPECT_EQ(shown("liver"), QStringLiteral("Leber"));
@@ -36,7 +36,7 @@ TEST_F(WindowLanguage, IsThatOfTextsTablesAndNumbers) {
   EXPECT_EQ(QStringLiteral("%L1 N").arg(1234.5, 0, 'f', 1), QStringLiteral("1234,5 N"));
 }
 
-TEST_F(WindowLanguage, EndsWithAnother) {
+TEST_F(WindowLanguage, IsReplacedByAnotherLanguage) {
   EXPECT_TRUE(speak(*QCoreApplication::instance(), QStringLiteral("en")));
   EXPECT_EQ(QCoreApplication::translate("trocar::trainer::MainWindow", "Views"), QStringLiteral("Views"));
   EXPECT_EQ(shown("liver"), QStringLiteral("liver"));
@@ -44,7 +44,7 @@ TEST_F(WindowLanguage, EndsWithAnother) {
   EXPECT_FALSE(speak(*QCoreApplication::instance(), QStringLiteral("xx")));
 }
 
-TEST_F(WindowLanguage, HasEveryActionAndItsKeys) {
+TEST_F(WindowLanguage, TranslatesEveryActionAndItsKeys) {
   QStringList english;
   for (const ActionRow& row : action_table())
     for (const QString& text : {does_text(row.action), keys_text(row.action)}) {
@@ -67,7 +67,7 @@ TEST_F(WindowLanguage, KeepsTheNamesOfLandmarks) {
     EXPECT_EQ(landmark_of(landmark_text(name)), name);
 }
 
-TEST(EnglishText, IsFoundInWidgetsAndNotInNamesOfFiles) {
+TEST(EnglishText, IsDetectedInWidgetsButNotInFileNames) {
   QWidget window;
   auto* label = new QLabel(QStringLiteral("<b>Ziel</b> of the Nadel"), &window);
   label->setObjectName(QStringLiteral("goal"));

@@ -58,7 +58,7 @@ struct WindowMirrorTest : ::testing::Test {
   int clicks = 0;
 };
 
-TEST_F(WindowMirrorTest, ShowsLeftOnTheRightAndTakesClicksWhereThePictureIs) {
+TEST_F(WindowMirrorTest, SwapsLeftAndRightIncludingClicks) {
   EXPECT_EQ(seen_at(50, 70), kGreen);
   mirror->set_axis(MirrorAxis::kLeftRight);
   EXPECT_EQ(seen_at(350, 70), kGreen);
@@ -69,7 +69,7 @@ TEST_F(WindowMirrorTest, ShowsLeftOnTheRightAndTakesClicksWhereThePictureIs) {
   EXPECT_EQ(clicks, 1) << "nothing is drawn there";
 }
 
-TEST_F(WindowMirrorTest, TurnsUpAndDownOver) {
+TEST_F(WindowMirrorTest, SwapsUpAndDown) {
   mirror->set_axis(MirrorAxis::kUpDown);
   EXPECT_EQ(seen_at(50, 230), kGreen);
   click_at(50, 230);
@@ -78,7 +78,7 @@ TEST_F(WindowMirrorTest, TurnsUpAndDownOver) {
   EXPECT_EQ(mirror->row_on_screen(top), top + 299);
 }
 
-TEST_F(WindowMirrorTest, ComesBackAsItWas) {
+TEST_F(WindowMirrorTest, RestoresTheUnmirroredWindow) {
   mirror->set_axis(MirrorAxis::kLeftRight);
   mirror->set_axis(MirrorAxis::kNone);
   EXPECT_EQ(seen_at(50, 70), kGreen);
@@ -86,7 +86,7 @@ TEST_F(WindowMirrorTest, ComesBackAsItWas) {
   EXPECT_EQ(clicks, 1);
 }
 
-TEST_F(WindowMirrorTest, WindowsThatOpenAreTurnedOverAboutTheMiddleOfTheFirst) {
+TEST_F(WindowMirrorTest, MirrorsPopupsAboutTheMiddleOfTheWindow) {
   mirror->set_axis(MirrorAxis::kLeftRight);
   QWidget popup(&window, Qt::ToolTip);
   const QRect frame = window.geometry();
@@ -108,7 +108,7 @@ QPointF pixel_of(const scene::CameraView& view, const ViewPlace& place, const Ve
   return {px * from_eye.dot(view.right_P()), -px * from_eye.dot(view.up_P)};
 }
 
-TEST(MirrorCamera, ShowsAPointWhereTheEyeSeesItThroughThePicture) {
+TEST(MirrorCamera, ProjectsPointsAsSeenFromTheEye) {
   constexpr double kTiny_px = 1e-6;
   for (const double tilt_deg : {0.0, 30.0, 90.0}) {
     MirrorSettings settings;
@@ -133,7 +133,7 @@ TEST(MirrorCamera, ShowsAPointWhereTheEyeSeesItThroughThePicture) {
   }
 }
 
-TEST(MirrorCamera, LooksDownOnALyingPictureAndAcrossAtAnUprightOne) {
+TEST(MirrorCamera, LooksDownAtAFlatScreenAndAcrossAtAnUprightOne) {
   MirrorSettings settings;
   settings.tilt_deg = 90.0;
   EXPECT_LT((mirror_camera_W(settings, {}).forward_P() + Vec3::UnitZ()).norm(), 1e-12);
@@ -141,7 +141,7 @@ TEST(MirrorCamera, LooksDownOnALyingPictureAndAcrossAtAnUprightOne) {
   EXPECT_LT((mirror_camera_W(settings, {}).forward_P() - Vec3::UnitY()).norm(), 1e-12);
 }
 
-TEST(MirrorSettingsFile, ComeBackAsTheyWere) {
+TEST(MirrorSettingsFile, RoundTripsSettings) {
   MirrorSettings settings;
   settings.axis = MirrorAxis::kUpDown;
   settings.is_camera_fixed = true;

@@ -158,22 +158,22 @@ void expect_signed_exam(const std::filesystem::path& state) {
 
 // By keys alone, by mouse from the start page to the score and again; the replay; the case builder beside; the help
 // levels.
-TEST_F(WindowTest, ABiopsyGoesFromTheStartPageToTheScoreAndAgain) {
+TEST_F(WindowTest, RunsABiopsyFromStartPageToScore) {
   expect_played(play({"keyboard.txt", "biopsy.txt", "transducer.txt", "case_builder.txt", "help_levels.txt"}));
 }
 
 // A device that is not there, a killed server, stopped forces, the question before the end.
-TEST_F(WindowTest, TheFirstStepsAreDoneByTheirGestures) {
+TEST_F(WindowTest, CompletesTheTutorialByGestures) {
   expect_played(play({"tutorial.txt"}));
 }
 
-TEST_F(WindowTest, WhatGoesWrongIsToldAndThePunctureGoesOn) {
+TEST_F(WindowTest, ReportsFaultsAndContinuesThePuncture) {
   const trocar::testing::GamepadStandIn unplugged(false);
   expect_played(play({"no_device.txt", "server_killed.txt", "forces_stopped.txt", "layouts.txt", "end_asked_narrow.txt",
                       "end_asked.txt"}));
 }
 
-TEST_F(WindowTest, AnExamTellsNothingAndIsNotAltered) {
+TEST_F(WindowTest, ExamHidesGuidanceAndCannotBeAltered) {
   const Played played = play({"exam.txt"});
   expect_played(played);
   for (const char* fact : {"depth_mm: ", "distance_mm: ", "tissue: ", "picture_from_plan_mm: ", "entry_from_plan_mm: "})
@@ -181,7 +181,7 @@ TEST_F(WindowTest, AnExamTellsNothingAndIsNotAltered) {
   expect_signed_exam(folder.filePath(QStringLiteral("state/trocar")).toStdString());
 }
 
-TEST_F(WindowTest, AFolderThatCannotBeWrittenIsNamedAndNothingBegins) {
+TEST_F(WindowTest, UnwritableStateFolderBlocksTheStart) {
   const QString script = write("unwritable.txt",
                                "expect banner has \"/dev/null/state/sessions\"\nexpect banner has \"--state\"\n"
                                "click start\nwait-for is_open is true within 300\nwait 3\nkey Return\nwait 1\n"
@@ -202,7 +202,7 @@ QByteArray all_pages(int columns, int rows) {
       .toUtf8();
 }
 
-TEST_F(WindowTest, EveryPageIsWholeOnASmallScreenAndInGermanOnAUsualOne) {
+TEST_F(WindowTest, EveryPageFitsSmallScreensAndGermanText) {
   expect_played(run({QStringLiteral("--script"), write("small.txt", all_pages(1024, 768))}));
   expect_played(run({QStringLiteral("--language"), QStringLiteral("de"), QStringLiteral("--script"),
                      write("usual.txt", all_pages(1280, 800))}));
@@ -225,7 +225,7 @@ TEST_F(WindowTest, APersonsAttemptsAreRecordedAndCompared) {
   EXPECT_TRUE(results::load_recording(*repository, attempts->front().id)->has_value());
 }
 
-TEST_F(WindowTest, AGamepadDrivesTheNeedleAndMayBeUnpluggedMeanwhile) {
+TEST_F(WindowTest, GamepadDrivesTheNeedleAndMayBeUnplugged) {
   trocar::testing::GamepadStandIn pad;
   // The script takes a picture where it is the person's turn.
   const auto at_picture = [&](const char* name) { return QFile::exists(folder.filePath(QString::fromUtf8(name))); };
@@ -242,7 +242,7 @@ TEST_F(WindowTest, AGamepadDrivesTheNeedleAndMayBeUnpluggedMeanwhile) {
   EXPECT_GT(pad.strongest_rumble(), 0);
 }
 
-TEST_F(WindowTest, TwoHapticDevicesAreNamedTestedAndMoveATool) {
+TEST_F(WindowTest, TwoHapticDevicesAreListedTestedAndMoveTheTools) {
   trocar::testing::HdStandIns devices;
   trocar::testing::HdControls& premium = devices.add_premium("Left Device");
   trocar::testing::HdControls& omni = devices.add_omni("Right Device");
@@ -310,7 +310,7 @@ double darker_share(const QImage& a, const QImage& b, int least) {
 }
 
 // Step by step with the needle, compared with several expert paths, and with a finger that feels the spine.
-TEST_F(WindowTest, ALumbarPunctureIsGuidedComparedAndPalpated) {
+TEST_F(WindowTest, GuidesALumbarPunctureWithPalpation) {
   expect_played(play_lumbar({"lumbar.txt", "expert_paths.txt", "palpation.txt"}));
 }
 
@@ -338,7 +338,7 @@ TEST_F(WindowTest, ABileDuctIsPuncturedUnderFluoroscopy) {
   EXPECT_GT(darker_share(empty, none, kDark), 0.5) << "black before the first pulse";
 }
 
-TEST_F(WindowTest, AnAttemptThatACrashCutOffCanBeSeenAgain) {
+TEST_F(WindowTest, ReplaysAnAttemptAfterACrash) {
   // The window is killed in mid-puncture by its own script's host.
   const QString script =
       write("cut.txt",
@@ -361,7 +361,7 @@ TEST_F(WindowTest, AnAttemptThatACrashCutOffCanBeSeenAgain) {
   expect_played(run({QStringLiteral("--script"), again}));
 }
 
-TEST_F(WindowTest, ABenchmarkLeavesTheSettingsAlone) {
+TEST_F(WindowTest, BenchmarkDoesNotChangeSettings) {
   const QByteArray kept("[desk]\nlayout=Slices\n");
   ASSERT_TRUE(QDir(folder.path()).mkpath(QStringLiteral("config/trocar")));
   QFile settings(folder.filePath(QStringLiteral("config/trocar/trocar-trainer.conf")));
@@ -400,13 +400,13 @@ TEST_F(WindowTest, MemoryDoesNotGrowFromCaseToCase) {
   EXPECT_LT(memory_mb[2], memory_mb[1] + kScatter_mb) << played.output.toStdString();
 }
 
-TEST_F(WindowTest, AScriptThatFailsSaysWhere) {
+TEST_F(WindowTest, FailedScriptNamesItsLine) {
   const Played played = run({QStringLiteral("--script"), write("wrong.txt", "expect page is start\nclick nowhere\n")});
   EXPECT_EQ(played.exit_status, 1);
   EXPECT_TRUE(played.output.contains(QStringLiteral("line 2"))) << played.output.toStdString();
 }
 
-TEST_F(WindowTest, WrongArgumentsAreToldInOneLine) {
+TEST_F(WindowTest, ReportsWrongArgumentsInOneLine) {
   EXPECT_EQ(run({QStringLiteral("--script"), QStringLiteral("/nowhere/steps.txt")}).exit_status, 2);
   EXPECT_EQ(run({QStringLiteral("--unheard-of")}).exit_status, 2);
   for (const char* name : {"--patient", "--task"}) {
@@ -419,7 +419,7 @@ TEST_F(WindowTest, WrongArgumentsAreToldInOneLine) {
   EXPECT_TRUE(played.output.contains(QStringLiteral("dance"))) << played.output.toStdString();
 }
 
-TEST_F(WindowTest, ASavedPictureIsOfTheWholeWindow) {
+TEST_F(WindowTest, ScreenshotShowsTheWholeWindow) {
   const QString picture = folder.filePath(QStringLiteral("window.png"));
   expect_played(run({QStringLiteral("--screenshot"), picture}));
   const QImage image(picture);

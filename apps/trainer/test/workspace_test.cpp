@@ -24,7 +24,7 @@
 namespace trocar::trainer {
 namespace {
 
-TEST(Workspace, ShowsOfThePlanWhatTheHelpAllows) {
+TEST(Workspace, ShowsThePlanPerHelpLevel) {
   Workspace workspace;
   workspace.resize(1000, 700);
   workspace.show();
@@ -66,7 +66,7 @@ TEST(Workspace, ShowsOfThePlanWhatTheHelpAllows) {
   }
 }
 
-TEST(Workspace, TheSideViewFollowsTheNeedleOfEachCase) {
+TEST(Workspace, SideViewFollowsTheNeedleOfEachCase) {
   Workspace workspace;
   workspace.resize(1000, 700);
   workspace.show();
@@ -115,7 +115,7 @@ struct WorkspaceLayoutTest : ::testing::Test {
   Workspace workspace;
 };
 
-TEST_F(WorkspaceLayoutTest, ViewsKeepTheirSizesOverRounds) {
+TEST_F(WorkspaceLayoutTest, KeepsViewSizesAcrossLayoutChanges) {
   const Sizes before = sizes_of(workspace);
   for (int round = 0; round < 5; ++round) {
     // As a time line below and a panel beside come and go, and pages change.
@@ -129,7 +129,7 @@ TEST_F(WorkspaceLayoutTest, ViewsKeepTheirSizesOverRounds) {
   }
 }
 
-TEST_F(WorkspaceLayoutTest, LayoutsComeBackAsTheyWereLeft) {
+TEST_F(WorkspaceLayoutTest, RestoresLayoutsAsLeft) {
   const Sizes before = sizes_of(workspace);
   for (const Layout& layout : workspace.layouts()) {
     workspace.choose_layout(layout.name);
@@ -140,7 +140,7 @@ TEST_F(WorkspaceLayoutTest, LayoutsComeBackAsTheyWereLeft) {
   expect_same(sizes_of(workspace), before, "all layouts");
 }
 
-TEST_F(WorkspaceLayoutTest, EveryLayoutFitsBesideTheTissuesOfASmallScreen) {
+TEST_F(WorkspaceLayoutTest, EveryLayoutFitsBesideTheTissuePanelOnSmallScreens) {
   for (const Layout& layout : workspace.layouts()) {
     workspace.choose_layout(layout.name);
     settle();
@@ -149,7 +149,7 @@ TEST_F(WorkspaceLayoutTest, EveryLayoutFitsBesideTheTissuesOfASmallScreen) {
   }
 }
 
-TEST_F(WorkspaceLayoutTest, TheMenuBringsAViewForwardFromBehindAnothersTab) {
+TEST_F(WorkspaceLayoutTest, MenuRaisesAViewFromBehindATab) {
   QMenu menu;
   workspace.fill_menu(menu);
   auto* ultrasound = workspace.findChild<QDockWidget*>(QStringLiteral("dock-ultrasound"));
@@ -183,7 +183,7 @@ ToolsShown needle_at(double inside_mm) {
   return tools;
 }
 
-TEST(Workspace, WithTheTipHiddenSlicesTellNothingOfItsDepth) {
+TEST(Workspace, SlicesHideTheDepthOfAHiddenTip) {
   Workspace workspace;
   workspace.resize(1000, 700);
   workspace.choose_layout(QStringLiteral("Slices"));
@@ -218,7 +218,7 @@ TEST(Workspace, WithTheTipHiddenSlicesTellNothingOfItsDepth) {
   EXPECT_EQ(axial->focus(), *needle_at(50.0).focus_P);
 }
 
-TEST(NeedleModels, OfTheListAreAllDrawn) {
+TEST(NeedleModels, CoverEveryNeedleInTheList) {
   const auto needles = tasks::load_needles(data_dir() / "needles.toml");
   ASSERT_TRUE(needles) << needles.error().text();
   std::map<std::string, scene::NeedleModel> models;

@@ -56,7 +56,7 @@ class XrayViewTest : public ::testing::Test {
   double now_s = 100.0;
 };
 
-TEST_F(XrayViewTest, RefusesAnInjectionWhereSomethingHindersItAndEndsOne) {
+TEST_F(XrayViewTest, RefusesAnInjectionWithAReason) {
   QStringList refused;
   QObject::connect(&view, &XrayView::injection_refused, [&](const QString& reason) { refused << reason; });
   view.set_injecting(true);
@@ -72,7 +72,7 @@ TEST_F(XrayViewTest, RefusesAnInjectionWhereSomethingHindersItAndEndsOne) {
   EXPECT_TRUE(view.is_injecting());
 }
 
-TEST_F(XrayViewTest, AnInterruptionPausesAnInjectionWhoseKeyIsHeld) {
+TEST_F(XrayViewTest, InterruptionPausesAHeldInjection) {
   view.pause_injection(true);
   view.set_injecting(true);
   EXPECT_FALSE(view.is_injecting());
@@ -84,7 +84,7 @@ TEST_F(XrayViewTest, AnInterruptionPausesAnInjectionWhoseKeyIsHeld) {
   EXPECT_FALSE(view.is_injecting()) << "released during the interruption";
 }
 
-TEST_F(XrayViewTest, ShowsAnImageOnlyWhileThePedalIsDownAndHoldsTheLast) {
+TEST_F(XrayViewTest, ExposesOnlyWithThePedalAndHoldsTheLastImage) {
   ASSERT_FALSE(run_until([&, n = 0]() mutable { return view.frame() != nullptr || ++n > 200; }) && view.frame());
   view.set_pedal(true);
   ASSERT_TRUE(shows_exposure());
@@ -101,7 +101,7 @@ TEST_F(XrayViewTest, ShowsAnImageOnlyWhileThePedalIsDownAndHoldsTheLast) {
   EXPECT_FALSE(view.use().is_beam_on);
 }
 
-TEST_F(XrayViewTest, TheKeyIsAPedal) {
+TEST_F(XrayViewTest, KeyActsAsPedal) {
   QKeyEvent down(QEvent::KeyPress, Qt::Key_Z, Qt::NoModifier), up(QEvent::KeyRelease, Qt::Key_Z, Qt::NoModifier);
   QCoreApplication::sendEvent(&view, &down);
   EXPECT_TRUE(view.is_pedal_down());
@@ -131,7 +131,7 @@ TEST_F(XrayViewTest, MouseMovesTableArmAndField) {
   EXPECT_EQ(view.settings().arm.lao_deg, view.unit().largest_lao_deg);
 }
 
-TEST_F(XrayViewTest, ContrastAgentLeavesTheNeedleWhileItIsInjected) {
+TEST_F(XrayViewTest, ContrastAgentLeavesTheNeedleDuringInjection) {
   const Vec3 liver_P(-80.0, 0.0, 20.0);
   view.set_needle(std::vector<Vec3>{liver_P + Vec3(-100.0, 0.0, 0.0), liver_P});
   ASSERT_TRUE(run_until([&] { return view.contrast() != nullptr; }));
@@ -228,7 +228,7 @@ TEST_F(XrayViewReplayTest, ContrastAgentIsInTheImage) {
   EXPECT_LT(mean_at_end(injections), without - 0.2) << "dark where it is";
 }
 
-TEST_F(XrayViewReplayTest, NothingActsInAReplayAndAllActsAfterwards) {
+TEST_F(XrayViewReplayTest, DisablesControlsDuringAReplay) {
   XrayControls controls(view);
   const auto* pedal = controls.findChild<QPushButton*>(QStringLiteral("xray-pedal"));
   const auto* lao = controls.findChild<QSlider*>(QStringLiteral("xray-lao"));

@@ -18,7 +18,7 @@ Vec3 moment_about(const Vec3& p_SE, const Wrench& wrench) {
   return wrench.torque_nmm - p_SE.cross(wrench.force_n);
 }
 
-TEST(WithoutTorque, TurnsTheNeedleAboutTheEntryPointAsBefore) {
+TEST(WithoutTorque, KeepsTheMomentAboutTheEntryPoint) {
   Random random(11);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 axis = random_vec(random, 1.0).normalized();
@@ -35,25 +35,25 @@ TEST(WithoutTorque, TurnsTheNeedleAboutTheEntryPointAsBefore) {
   }
 }
 
-TEST(WithoutTorque, ClosedForm) {
+TEST(WithoutTorque, MatchesTheClosedForm) {
   // Needle along z, entry 100 mm ahead; 200 N mm about x turn the hub towards -y, as 2 N there along +y hold against.
   const Wrench turned = without_torque({{0.5, 0.0, -3.0}, {200.0, 0.0, 0.0}}, Vec3::UnitZ(), Vec3(0.0, 0.0, 100.0));
   EXPECT_LT((turned.force_n - Vec3(0.5, 2.0, -3.0)).norm(), 1e-12);
 }
 
-TEST(WithoutTorque, LeavesAForceWithoutTorqueAlone) {
+TEST(WithoutTorque, KeepsAForceWithoutTorque) {
   const Wrench wrench{{1.0, -2.0, 3.0}, Vec3::Zero()};
   EXPECT_EQ(without_torque(wrench, Vec3::UnitZ(), Vec3(5.0, 0.0, 80.0)).force_n, wrench.force_n);
 }
 
-TEST(WithoutTorque, OutsideTheForceStays) {
+TEST(WithoutTorque, KeepsTheForceOutsideTheBody) {
   const Wrench wrench{{1.0, -2.0, 3.0}, {50.0, 60.0, 70.0}};
   const Wrench turned = without_torque(wrench, Vec3::UnitZ(), std::nullopt);
   EXPECT_EQ(turned.force_n, wrench.force_n);
   EXPECT_EQ(turned.torque_nmm, Vec3::Zero().eval());
 }
 
-TEST(WithoutTorque, ShortLeverNeitherClicksNorGrowsTheForce) {
+TEST(WithoutTorque, ShortLeverNeitherStepsNorAmplifiesTheForce) {
   const Wrench wrench{Vec3::Zero(), {80.0, 0.0, 0.0}};
   Vec3 before = without_torque(wrench, Vec3::UnitZ(), Vec3(0.0, 0.0, 60.0)).force_n;
   for (double lever_mm = 60.0; lever_mm > -60.0; lever_mm -= 0.1) {
@@ -65,7 +65,7 @@ TEST(WithoutTorque, ShortLeverNeitherClicksNorGrowsTheForce) {
   EXPECT_EQ(without_torque(wrench, Vec3::UnitZ(), Vec3(3.0, 0.0, 0.0)).force_n.norm(), 0.0);
 }
 
-TEST(WithoutTorque, PassesOnWhatIsNotFiniteAndNeverAllocates) {
+TEST(WithoutTorque, PassesNonFiniteValuesAndNeverAllocates) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const testing::AllocationGuard guard;
   const Wrench turned = without_torque({{nan, 0.0, 0.0}, Vec3::Zero()}, Vec3::UnitZ(), Vec3(0.0, 0.0, 100.0));

@@ -55,7 +55,7 @@ TEST_P(EveryDevice, NeverAllocatesInThePeriod) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST_P(EveryDevice, RefusesWrenchesThatNoGateWrites) {
+TEST_P(EveryDevice, RefusesWrenchesBeyondTheGateLimits) {
   const auto device = open(options());
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinite = std::numeric_limits<double>::infinity();
@@ -86,7 +86,7 @@ TEST_P(EveryDevice, RefusedWrenchMovesNothing) {
   }
 }
 
-TEST_P(EveryDevice, TakesThePresetItIsGiven) {
+TEST_P(EveryDevice, UsesTheRequestedPreset) {
   DeviceOptions wanted = options();
   wanted.preset = "desktop";
   const std::string spec = GetParam();
@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryDevice,
                          ::testing::Values("virtual", "virtual:omni", "virtual:inverse3", "virtual:falcon", "mouse",
                                            "replay:x"));
 
-TEST(VirtualDeviceSpec, IsThePremiumUnlessAnotherIsNamed) {
+TEST(VirtualDeviceSpec, DefaultsToThePremium) {
   DeviceOptions options;
   options.devices_file = data_dir() / "devices.toml";
   EXPECT_EQ((*open_device({"virtual", ""}, options))->name(), "virtual:premium");

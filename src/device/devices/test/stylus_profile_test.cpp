@@ -34,7 +34,7 @@ std::string text_with(const std::string& weight, const std::string& more = "") {
   return "device = \"openhaptics:Left Device\"\npreset = \"omni\"\nstylus_weight_n = " + weight + "\n" + more;
 }
 
-TEST(StylusProfile, IsReadAsItWasSaved) {
+TEST(StylusProfile, RoundTripsThroughItsFile) {
   const TemporaryFolder folder;
   const auto inner = folder / "styluses";
   for (const std::optional<double> lever_mm : {std::optional<double>(), std::optional<double>(-12.25)}) {
@@ -50,14 +50,14 @@ TEST(StylusProfile, IsReadAsItWasSaved) {
   EXPECT_EQ(*load_stylus_profile(inner, kDevice), std::nullopt);
 }
 
-TEST(StylusProfile, EveryDeviceHasItsOwnFileInTheFolder) {
+TEST(StylusProfile, UsesAUniqueFileForEachDevice) {
   const std::filesystem::path folder = "/folder";
   EXPECT_NE(stylus_profile_file(folder, "openhaptics:a b"), stylus_profile_file(folder, "openhaptics:a-b"));
   for (const char* device : {"haply:ws://localhost:10001#049D", "../../etc/passwd", "..", "."})
     EXPECT_EQ(stylus_profile_file(folder, device).parent_path(), folder) << device;
 }
 
-TEST(StylusProfile, ReplacesThePresetsWeight) {
+TEST(StylusProfile, OverridesTheWeightOfThePreset) {
   const TemporaryFolder folder;
   const haptics::DevicePreset premium = shipped_preset("premium");
   ASSERT_TRUE(save_stylus_profile({"a", "premium", 0.75, 31.0}, folder.path()));
@@ -73,7 +73,7 @@ TEST(StylusProfile, ReplacesThePresetsWeight) {
             premium.capability.stylus_lever_mm);
 }
 
-TEST(StylusProfile, ABrokenOneIsRefusedInOneLineThatNamesTheFile) {
+TEST(StylusProfile, RefusesAMalformedFileInOneLine) {
   const haptics::DevicePreset omni = shipped_preset("omni");
   ASSERT_TRUE(with_stylus_profile(omni, Saved(text_with("0.8")).path(), kDevice)) << "the usual text is valid";
   const std::string other = "device = \"x\"\npreset = \"omni\"\nstylus_weight_n = 0.5\n";
@@ -117,7 +117,7 @@ TEST(StylusProfile, IsUsedByADeviceThatIsOpened) {
   EXPECT_FALSE(open_device({"virtual", "premium"}, options));
 }
 
-TEST(StylusProfile, DoesNotChangeTheWeightOfASimulatedStylus) {
+TEST(StylusProfile, KeepsTheWeightOfASimulatedStylus) {
   const TemporaryFolder folder;
   ASSERT_TRUE(save_stylus_profile({"virtual:premium", "premium", 0.9, std::nullopt}, folder.path()));
   DeviceOptions options;

@@ -31,7 +31,7 @@ WorkspaceParams turned_and_scaled() {
   return params;
 }
 
-TEST(WorkspaceMap, IsTheCalibrationWhereNothingIsScaled) {
+TEST(WorkspaceMap, EqualsTheCalibrationAtUnitScale) {
   WorkspaceParams params;
   params.X_WD = Pose(haptics::rotation_from_vector({0.3, 0.2, 0.1}), {1.0, 2.0, 3.0});
   WorkspaceState state;
@@ -40,7 +40,7 @@ TEST(WorkspaceMap, IsTheCalibrationWhereNothingIsScaled) {
   EXPECT_LT(distance(map_to_room(state, params, X_DS, ~0u), params.X_WD * X_DS), 1e-12);  // no button is the clutch
 }
 
-TEST(WorkspaceMap, ScalesMotionAboutTheDevicesOriginButNoAngle) {
+TEST(WorkspaceMap, ScalesMotionAboutTheDeviceOriginButNotAngles) {
   const WorkspaceParams params = turned_and_scaled();
   WorkspaceState state;
   const Pose middle = map_to_room(state, params, Pose(), 0);
@@ -51,7 +51,7 @@ TEST(WorkspaceMap, ScalesMotionAboutTheDevicesOriginButNoAngle) {
   EXPECT_LT((away.R() - params.X_WD.R() * R_DS).norm(), 1e-12);
 }
 
-TEST(WorkspaceMap, WayBackUndoesIt) {
+TEST(WorkspaceMap, InverseUndoesTheMap) {
   const WorkspaceParams params = turned_and_scaled();
   Random random(2);
   WorkspaceState state;
@@ -67,7 +67,7 @@ TEST(WorkspaceMap, WayBackUndoesIt) {
   EXPECT_LT(distance(map_to_room(started, params, map_from_room(fresh, params, X_WS), 0), X_WS), 1e-9);
 }
 
-TEST(Clutch, HoldsTheToolAndGoesOnWithoutAJump) {
+TEST(Clutch, HoldsTheToolAndReleasesItWithoutAJump) {
   const WorkspaceParams params = turned_and_scaled();
   Random random(3);
   WorkspaceState state;
@@ -121,7 +121,7 @@ TEST(Clutch, GivesNoForceWhilePressed) {
   EXPECT_EQ(map_to_device(state, params, push_W).force_n, free.force_n);
 }
 
-TEST(Clutch, SurvivesReadingsThatAreNotFinite) {
+TEST(Clutch, SurvivesNonFiniteReadings) {
   const WorkspaceParams params = turned_and_scaled();
   const Pose bad = Pose::translation(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
   WorkspaceState state;
@@ -144,7 +144,7 @@ TEST(WorkspaceMap, NeverAllocates) {
   EXPECT_TRUE(X_WS.is_finite() && wrench.force_n.allFinite());
 }
 
-TEST(WorkspaceMap, TakesItsParametersFromThePreset) {
+TEST(WorkspaceMap, ReadsItsParametersFromThePreset) {
   haptics::DevicePreset preset;
   preset.force_scale = 0.25;
   preset.motion_scale = 3.0;

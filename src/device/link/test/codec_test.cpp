@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kSeeds = 200;
 
-TEST(Codec, EveryClientMessageComesBackBitForBit) {
+TEST(Codec, RoundTripsEveryClientMessageBitwise) {
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     for (const ClientMessage& message : RandomMessages(seed).client_messages()) {
       const auto decoded = decode_client_message(encode(message));
@@ -21,7 +21,7 @@ TEST(Codec, EveryClientMessageComesBackBitForBit) {
   }
 }
 
-TEST(Codec, EveryServerMessageComesBackBitForBit) {
+TEST(Codec, RoundTripsEveryServerMessageBitwise) {
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     for (const ServerMessage& message : RandomMessages(seed).server_messages()) {
       const auto decoded = decode_server_message(encode(message));
@@ -31,7 +31,7 @@ TEST(Codec, EveryServerMessageComesBackBitForBit) {
   }
 }
 
-TEST(Codec, DefaultsComeThrough) {
+TEST(Codec, RoundTripsDefaultMessages) {
   for (const ClientBody& body :
        {ClientBody(Hello{}), ClientBody(Heartbeat{}), ClientBody(Command{}), ClientBody(Command{0, LoadScene{}}),
         ClientBody(Command{0, SetParameters{}}), ClientBody(Command{0, SetParameters{std::vector<TissueSetting>()}}),
@@ -81,7 +81,7 @@ TEST(Codec, BytesMayStartAnywhere) {
   }
 }
 
-TEST(Codec, RotationThatIsSlightlyOffIsMadeExactOnce) {
+TEST(Codec, OrthonormalisesASlightlyInexactRotationOnce) {
   const Mat3 R = (1.0 + 1e-7) * RandomMessages(4).some<Pose>().R();
   HandTarget target;
   target.X_PN = Pose(R, Vec3(1, 2, 3));
@@ -96,7 +96,7 @@ TEST(Codec, RotationThatIsSlightlyOffIsMadeExactOnce) {
   EXPECT_EQ(Fingerprint(*again), Fingerprint(*decoded));
 }
 
-TEST(CodecDeathTest, BatchThatIsTooLongIsTheCallersMistake) {
+TEST(CodecDeathTest, AbortsOnATooLongBatch) {
   StateBatch batch;
   batch.samples.resize(kMostSamples + 1);
   EXPECT_DEATH(encode(ServerMessage{1, 1, batch}), "kMostSamples");

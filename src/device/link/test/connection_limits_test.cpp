@@ -41,7 +41,7 @@ void poll_all(ServerSocket& server, double now_s) {
   for (int n = 0; n < 50; ++n) server.receive(0, testing::test_welcome(), now_s);
 }
 
-TEST(ConnectionLimits, SixteenAreAcceptedAtOnceAndAHundredASecond) {
+TEST(ConnectionLimits, Accepts16AtOnceAnd100PerSecond) {
   ServerSocket server = testing::bound();
   std::vector<detail::Descriptor> sockets;
   for (int n = 0; n < 30; ++n) sockets.push_back(dial(server.bound_url()));
@@ -55,7 +55,7 @@ TEST(ConnectionLimits, SixteenAreAcceptedAtOnceAndAHundredASecond) {
   EXPECT_FALSE(is_closed(sockets[1]));
 }
 
-TEST(ConnectionLimits, AConnectionHasFiveSecondsForItsHello) {
+TEST(ConnectionLimits, ClosesAConnectionWithoutHelloAfterFiveSeconds) {
   ServerSocket server = testing::bound();
   const detail::Descriptor silent = dial(server.bound_url());
   poll_all(server, kNow_s);
@@ -67,7 +67,7 @@ TEST(ConnectionLimits, AConnectionHasFiveSecondsForItsHello) {
   EXPECT_TRUE(is_closed(silent));
 }
 
-TEST(ConnectionLimits, TenInvalidMessagesAreAnsweredAndNotTheEleventh) {
+TEST(ConnectionLimits, AnswersOnlyTenInvalidMessages) {
   ServerSocket server = testing::bound();
   RawClient client(server.bound_url());
   testing::join(server, client);
@@ -106,13 +106,13 @@ void expect_limit_before_hello(ServerSocket& server, RawClient& client) {
   EXPECT_EQ(server.refused().malformed, 1u);
 }
 
-TEST(ConnectionLimits, OneByteTooMuchBeforeHelloClosesTheConnection) {
+TEST(ConnectionLimits, ClosesOnOneByteTooManyBeforeHello) {
   ServerSocket server = testing::bound();
   RawClient client(server.bound_url());
   expect_limit_before_hello(server, client);
 }
 
-TEST(ConnectionLimits, OneByteTooMuchBeforeHelloClosesTheConnectionWithKeys) {
+TEST(ConnectionLimits, ClosesOnOneByteTooManyBeforeHelloWithKeys) {
   const CurveKeys server_keys = *make_curve_keys(), client_keys = *make_curve_keys();
   auto server = ServerSocket::bind(testing::any_port(), ServerSecurity{server_keys, {client_keys.public_key}});
   ASSERT_TRUE(server) << server.error().text();

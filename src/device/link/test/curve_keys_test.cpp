@@ -35,7 +35,7 @@ std::string pair_text(const std::string& public_key, const std::string& secret_k
   return "public " + public_key + "\nsecret " + secret_key + "\n";
 }
 
-TEST(KeyFolder, HoldsPairsThatFitTogether) {
+TEST(KeyFolder, HoldsMatchingKeyPairs) {
   const TemporaryFolder folder;
   const fs::path keys = folder / "keys";
   ASSERT_TRUE(write_key_folder(keys));
@@ -48,7 +48,7 @@ TEST(KeyFolder, HoldsPairsThatFitTogether) {
   EXPECT_NE(server->secret_key, client->secret_key);
 }
 
-TEST(KeyFolder, SecretsAreForTheUserAlone) {
+TEST(KeyFolder, MakesSecretsReadableOnlyByTheUser) {
   const TemporaryFolder folder;
   const fs::path keys = folder / "keys";
   const mode_t before = ::umask(0);
@@ -96,7 +96,7 @@ TEST(CurveKeys, FileThatOthersCanReadIsRefused) {
   }
 }
 
-TEST(CurveKeys, WhatIsNoPairIsRefused) {
+TEST(CurveKeys, RefusesAFileWithoutAKeyPair) {
   const TemporaryFolder folder;
   const std::string other = make_curve_keys()->public_key;
   const std::string good = pair_text(kPublic, kSecret);
@@ -118,7 +118,7 @@ TEST(CurveKeys, WrongLineIsNamed) {
   EXPECT_NE(keys.error().text().find("line 3"), std::string::npos) << keys.error().text();
 }
 
-TEST(AllowList, CommentsAndEmptyLinesAreLeftOut) {
+TEST(AllowList, SkipsCommentsAndEmptyLines) {
   const TemporaryFolder folder;
   const std::string other = make_curve_keys()->public_key;
   const std::string text = "# clients\r\n\n  " + std::string(kPublic) + "  # the trainer\n#" + other + "\n# " + other;
@@ -144,7 +144,7 @@ std::vector<std::string> errors_of(const fs::path& keys) {
   return errors;
 }
 
-TEST(KeyFolder, ThatOthersCanWriteIsRefused) {
+TEST(KeyFolder, IsRefusedIfOthersCanWriteIt) {
   const TemporaryFolder folder;
   const fs::path keys = folder / "above" / "keys";
   fs::create_directory(folder / "above");
@@ -163,7 +163,7 @@ TEST(KeyFolder, ThatOthersCanWriteIsRefused) {
   }
 }
 
-TEST(KeyFolder, OfALinkAndOfItsTargetAreChecked) {
+TEST(KeyFolder, ChecksALinkAndItsTarget) {
   const TemporaryFolder folder;
   const fs::path keys = folder / "keys", links = folder / "links";
   ASSERT_TRUE(write_key_folder(keys));
@@ -206,7 +206,7 @@ TEST(AllowList, FileThatOthersCanWriteIsRefused) {
   EXPECT_TRUE(load_allow_list(write_file(folder, line, 0644)));
 }
 
-TEST(PublicKey, IsOneAlone) {
+TEST(PublicKey, FileHoldsExactlyOneKey) {
   const TemporaryFolder folder;
   const std::string other = make_curve_keys()->public_key;
   EXPECT_FALSE(load_public_key(write_file(folder, "# none\n")));

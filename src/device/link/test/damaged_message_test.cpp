@@ -59,19 +59,19 @@ void flip_everywhere(const Message& message) {
   EXPECT_GT(accepted, 0) << "a number's last bits may change";
 }
 
-TEST(DamagedMessage, CutAnywhereIsRefused) {
+TEST(DamagedMessage, IsRefusedWhenTruncatedAnywhere) {
   RandomMessages random(11);
   for (const ClientMessage& message : random.client_messages()) cut_everywhere(message);
   for (const ServerMessage& message : random.server_messages()) cut_everywhere(message);
 }
 
-TEST(DamagedMessage, FlippedByteIsRefusedOrStillSound) {
+TEST(DamagedMessage, IsRefusedOrValidWithAFlippedByte) {
   RandomMessages random(12);
   for (const ClientMessage& message : random.client_messages()) flip_everywhere(message);
   for (const ServerMessage& message : random.server_messages()) flip_everywhere(message);
 }
 
-TEST(DamagedMessage, SeveralWrongBytesAreRefusedOrStillSound) {
+TEST(DamagedMessage, IsRefusedOrValidWithSeveralWrongBytes) {
   Random random(13);
   constexpr int kTrials = 3000;
   for (int trial = 0; trial < kTrials; ++trial) {
@@ -109,7 +109,7 @@ TEST(DamagedMessage, EmptyAndTinyAreRefused) {
   }
 }
 
-TEST(DamagedMessage, LargerThanAllowedIsRefusedForItsSize) {
+TEST(DamagedMessage, IsRefusedBySizeWhenTooLarge) {
   Bytes bytes = encode(ClientMessage{1, 1, Goodbye{}});
   bytes.resize(kMostMessageBytes);
   EXPECT_TRUE(decode_client_message(bytes));
@@ -119,7 +119,7 @@ TEST(DamagedMessage, LargerThanAllowedIsRefusedForItsSize) {
   EXPECT_NE(decoded.error().what.find("1048577"), std::string::npos) << decoded.error().what;
 }
 
-TEST(DamagedMessage, OtherSidesMessageIsRefused) {
+TEST(DamagedMessage, IsRefusedFromTheWrongSide) {
   RandomMessages random(14);
   for (const ClientMessage& message : random.client_messages()) EXPECT_FALSE(decode_server_message(encode(message)));
   for (const ServerMessage& message : random.server_messages()) EXPECT_FALSE(decode_client_message(encode(message)));

@@ -21,7 +21,7 @@ void expect_refused(std::string_view text) {
   EXPECT_EQ(endpoint.error().exit_status, kUnusableArguments) << text;
 }
 
-TEST(Endpoint, OnlyIpcNeedsNoKeys) {
+TEST(Endpoint, NeedsKeysExceptForIpc) {
   EXPECT_FALSE(parse_endpoint("ipc:///run/user/0/trocar-needle")->needs_keys);
   for (const char* text : {"tcp://127.0.0.1:5571", "tcp://localhost:5571", "tcp://[::1]:5571", "tcp://0.0.0.0:5571",
                            "tcp://[::]:5571", "tcp://192.168.1.7:5571"}) {
@@ -32,7 +32,7 @@ TEST(Endpoint, OnlyIpcNeedsNoKeys) {
 }
 
 // inet_aton and others read 0127 as octal: 87.0.0.1.
-TEST(Endpoint, AddressesAreNumbersInOneFormAlone) {
+TEST(Endpoint, AcceptsOnlyCanonicalNumericAddresses) {
   for (const char* text :
        {"tcp://0127.0.0.1:5571", "tcp://127.1:5571", "tcp://127.0.1:1", "tcp://0x7f.0.0.1:1", "tcp://2130706433:1",
         "tcp://127.0.0.1.example.org:1", "tcp://127.example.org:1", "tcp://eth0:1", "tcp://*:5571",
@@ -41,14 +41,14 @@ TEST(Endpoint, AddressesAreNumbersInOneFormAlone) {
   }
 }
 
-TEST(Endpoint, UrlIsWhatIsBound) {
+TEST(Endpoint, NormalisesTheUrl) {
   EXPECT_EQ(parse_endpoint("tcp://localhost:5571")->url, "tcp://127.0.0.1:5571");
   EXPECT_EQ(parse_endpoint("tcp://127.0.0.1:0")->url, "tcp://127.0.0.1:0");
   EXPECT_EQ(parse_endpoint("tcp://127.0.0.1:65535")->url, "tcp://127.0.0.1:65535");
   EXPECT_EQ(parse_endpoint("ipc:///tmp/a b")->url, "ipc:///tmp/a b");
 }
 
-TEST(Endpoint, WhatIsNoneIsUnusable) {
+TEST(Endpoint, RefusesMalformedEndpoints) {
   for (const char* text : {"",
                            "needle",
                            "ipc://",
@@ -76,7 +76,7 @@ TEST(Endpoint, WhatIsNoneIsUnusable) {
   }
 }
 
-TEST(Endpoint, SocketPathIsAsLongAsASocketsNameMayBe) {
+TEST(Endpoint, LimitsTheSocketPathLength) {
   constexpr std::size_t kMostPathBytes = 107;
   const std::string longest = "/" + std::string(kMostPathBytes - 1, 'a');
   EXPECT_TRUE(parse_endpoint("ipc://" + longest));
@@ -104,14 +104,14 @@ TEST(DefaultEndpoint, LiesInTheUsersRunTimeFolder) {
   EXPECT_EQ(default_endpoint("needle"), "ipc://" + (folder / "trocar-needle").string());
 }
 
-TEST(DefaultEndpoint, AvoidsAFolderThatOthersMayEnter) {
+TEST(DefaultEndpoint, AvoidsAFolderOpenToOthers) {
   const TemporaryFolder folder;
   ASSERT_EQ(::chmod(folder.path().c_str(), 0755), 0);
   const RuntimeFolder runtime(folder.path());
   EXPECT_FALSE(default_endpoint("needle").starts_with("ipc://" + folder.path().string()));
 }
 
-TEST(PrivateFolder, IsMadeForTheUserAlone) {
+TEST(PrivateFolder, IsCreatedForTheUserOnly) {
   const TemporaryFolder folder;
   const fs::path made = folder / "run";
   ASSERT_TRUE(detail::make_private_folder(made));
@@ -133,7 +133,7 @@ TEST(PrivateFolder, OpenFolderLinkAndFileAreRefused) {
   EXPECT_FALSE(detail::make_private_folder(folder / "no" / "such"));
 }
 
-TEST(PrivateFolder, AnotherUsersIsRefused) {
+TEST(PrivateFolder, RefusesAFolderOfAnotherUser) {
   if (::geteuid() == 0) {
     const TemporaryFolder folder;
     constexpr uid_t kNobody = 65534;

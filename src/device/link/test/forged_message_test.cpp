@@ -34,7 +34,7 @@ void expect_says(const std::string& text, const std::string& words) {
   EXPECT_NE(text.find(words), std::string::npos) << text;
 }
 
-TEST(ForgedMessage, AnotherVersionIsToldBeforeAllElse) {
+TEST(ForgedMessage, ReportsAnotherVersionFirst) {
   constexpr std::uint32_t kOther = 77;
   Builder b;
   const auto goodbye = wire::CreateGoodbye(b).Union();
@@ -49,7 +49,7 @@ TEST(ForgedMessage, AnotherVersionIsToldBeforeAllElse) {
   expect_says(complaint(decode_server_message(take_bytes(later))), "version 77");
 }
 
-TEST(ForgedMessage, WithoutVersionIsVersionZero) {
+TEST(ForgedMessage, TreatsAMissingVersionAsZero) {
   Builder b;
   b.Finish(wire::CreatePrelude(b), kClientIdentifier);
   expect_says(complaint(decode_client_message(take_bytes(b))), "version 0");
@@ -98,7 +98,7 @@ Bytes forge_settings(std::size_t count, std::size_t text_bytes) {
   return finish_client(b, wire::ClientBody::Command, command);
 }
 
-TEST(ForgedMessage, OneTextNamedOftenDoesNotMultiply) {
+TEST(ForgedMessage, SharedTextDoesNotMultiplyMemory) {
   constexpr std::size_t kLong = 100'000;
   EXPECT_TRUE(decode_client_message(forge_settings(1, kLong)));
   expect_says(complaint(decode_client_message(forge_settings(200, kLong))), "more text than the message");
@@ -120,7 +120,7 @@ TEST(ForgedMessage, TooManyTicksAreRefused) {
   }
 }
 
-TEST(ForgedMessage, AShaftOfTooManyPointsOrOfNoNumbersIsRefused) {
+TEST(ForgedMessage, RefusesAShaftWithTooManyOrNonFinitePoints) {
   constexpr std::size_t kMost = telemetry::NeedleShape::kMostSpans;
   const auto forge = [](std::size_t points, float mm) {
     Builder b;
@@ -153,7 +153,7 @@ TEST(ForgedMessage, MisalignedTicksAreRefused) {
   expect_says(complaint(decode_server_message(forge_misaligned_batch(sample, 4))), "misaligned ticks");
 }
 
-TEST(ForgedMessage, CyclesEnd) {
+TEST(ForgedMessage, TerminatesOnCycles) {
   // Every table's offset to the next one leads forward: a message can be deep, never endless. Here all offsets are 4.
   Bytes bytes(1024);
   const std::uint32_t four = 4;

@@ -52,7 +52,7 @@ int expect_none_accepted(const Message& good, const std::vector<T>& values) {
   return count;
 }
 
-TEST(UnsoundNumber, IsRefusedWhereverItStands) {
+TEST(UnsoundNumber, IsRefusedInEveryField) {
   const std::vector<double> values = {kNan, kInfinity, -kInfinity, 1e200, -1e200};
   RandomMessages random(21);
   int count = 0;
@@ -61,7 +61,7 @@ TEST(UnsoundNumber, IsRefusedWhereverItStands) {
   EXPECT_GE(count, 67) << "numbers of all messages";
 }
 
-TEST(UnsoundText, IsRefusedWhereverItStands) {
+TEST(UnsoundText, IsRefusedInEveryField) {
   const std::vector<std::string> texts = {std::string(kMostTextBytes + 1, 'a'),
                                           "a\x01",
                                           std::string("a\0b", 3),
@@ -78,14 +78,14 @@ TEST(UnsoundText, IsRefusedWhereverItStands) {
   EXPECT_GT(count, 20);
 }
 
-TEST(UnsoundText, LinesAreForTissueTablesAlone) {
+TEST(UnsoundText, AllowsLineBreaksOnlyInTissueTables) {
   EXPECT_TRUE(is_accepted(Command{1, with(&LoadScene::tissues_toml, "[skin]\r\n\tk = 1 # é\n")}));
   EXPECT_FALSE(is_accepted(Command{1, with(&LoadScene::patient, "a\nb")}));
   EXPECT_FALSE(is_accepted(Command{1, SetParameters{std::vector<TissueSetting>{{"liver\n", "k", 0.5}}}}));
   EXPECT_FALSE(is_accepted(Hello{"a\tb", true}));
 }
 
-TEST(CleanText, IsUtf8AsTheStandardHasIt) {
+TEST(CleanText, AcceptsExactlyStandardUtf8) {
   using detail::is_plain_text;
   using detail::Layout;
   for (const char* good : {"", "a b", "\xc2\xa0", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
@@ -119,7 +119,7 @@ TEST(CleanText, IsUtf8AsTheStandardHasIt) {
   }
 }
 
-TEST(UnsoundPose, WhatIsNoRotationIsRefused) {
+TEST(UnsoundPose, RefusesANonRotation) {
   const auto accepts = [](const Mat3& R) { return is_accepted(with(&HandTarget::X_PN, Pose(R, Vec3::Zero()))); };
   const Mat3 R = RandomMessages(23).some<Pose>().R();
   Mat3 sheared = R;
@@ -133,7 +133,7 @@ TEST(UnsoundPose, WhatIsNoRotationIsRefused) {
   EXPECT_FALSE(is_accepted(Command{1, with(&LoadScene::X_PW, Pose(2.0 * R, Vec3::Zero()))}));
 }
 
-TEST(UnsoundPose, TooFarAwayIsRefused) {
+TEST(UnsoundPose, RefusesATooDistantPosition) {
   constexpr double kFar_mm = 1e5;
   EXPECT_TRUE(is_accepted(with(&HandTarget::X_PN, Pose::translation({kFar_mm, 0, 0}))));
   EXPECT_FALSE(is_accepted(with(&HandTarget::X_PN, Pose::translation({kFar_mm, 1000, 0}))));
@@ -161,7 +161,7 @@ bool is_accepted(const ServerStatus& status) {
   return is_accepted(ServerMessage{1, 1, StateBatch{1, {}, status}});
 }
 
-TEST(UnsoundEnumerator, OfAStatusIsRefused) {
+TEST(UnsoundEnumerator, IsRefusedInAStatus) {
   const auto accepts = [](auto field, auto last) {
     const auto number = static_cast<int>(last);
     using Enum = decltype(last);
@@ -197,7 +197,7 @@ TEST(UnsoundTick, EnumeratorsOutOfRangeAreRefused) {
   }
 }
 
-TEST(UnsoundTick, TimeNeedleAndDeviceAreFinite) {
+TEST(UnsoundTick, RequiresFiniteTimeNeedleAndDevice) {
   for (const double bad : {kNan, kInfinity, 1e200}) {
     EXPECT_FALSE(is_accepted_in_a_batch(with(&telemetry::TickSample::time_s, bad)));
     for (int k = 0; k < 3; ++k) {
@@ -210,7 +210,7 @@ TEST(UnsoundTick, TimeNeedleAndDeviceAreFinite) {
   }
 }
 
-TEST(UnsoundTick, ForcesOfAFaultArriveAsTheyWere) {
+TEST(UnsoundTick, KeepsTheForcesOfAFault) {
   telemetry::TickSample sample;
   sample.f_total_n.x() = kNan;
   sample.f_stick_n = -kInfinity;

@@ -35,11 +35,11 @@ TEST(ServerBinding, EndpointInUseIsAnError) {
   join(first, client);
 }
 
-TEST(ServerBinding, FolderThatIsNotThereIsAnError) {
+TEST(ServerBinding, FailsForAMissingFolder) {
   EXPECT_FALSE(ServerSocket::bind({"ipc:///no/such/folder/socket", false}));
 }
 
-TEST(ServerBinding, SocketFileIsForItsUserAloneAndGoesWithTheServer) {
+TEST(ServerBinding, MakesAPrivateSocketFileAndRemovesIt) {
   const TemporaryFolder folder;
   {
     ServerSocket server = bound(ipc_endpoint(folder));
@@ -64,7 +64,7 @@ TEST(ServerBinding, ReplacesTheSocketOfADeadServer) {
   join(server, client);
 }
 
-TEST(ServerBinding, LeavesAFileThatIsNoSocketAlone) {
+TEST(ServerBinding, KeepsAFileThatIsNotASocket) {
   const TemporaryFolder folder;
   std::ofstream(folder / "socket") << "somebody's";
   EXPECT_FALSE(ServerSocket::bind(ipc_endpoint(folder)));
@@ -87,7 +87,7 @@ class SecureServer : public ::testing::Test {
   std::optional<ServerSocket> server_;
 };
 
-TEST_F(SecureServer, WelcomesAnAllowedClientAndNobodyElse) {
+TEST_F(SecureServer, WelcomesOnlyAllowedClients) {
   RawClient unknown(server_->bound_url()), keyless(server_->bound_url()), good(server_->bound_url());
   use(unknown, *make_curve_keys());
   use(good, allowed_);
@@ -132,7 +132,7 @@ TEST_F(SecureServer, PortInUseIsAnError) {
   EXPECT_NE(second.error().what.find("in use"), std::string::npos) << second.error().text();
 }
 
-TEST_F(SecureServer, CarriesLongMessagesBothWays) {
+TEST_F(SecureServer, CarriesLongMessagesInBothDirections) {
   RawClient client(server_->bound_url());
   use(client, allowed_);
   join(*server_, client);
@@ -148,7 +148,7 @@ TEST_F(SecureServer, CarriesLongMessagesBothWays) {
   EXPECT_EQ(batch->samples.size(), kMostSamples);
 }
 
-TEST_F(SecureServer, RefusesWhatIsNoKey) {
+TEST_F(SecureServer, RefusesMalformedKeys) {
   const auto server = ServerSocket::bind(any_endpoint(), ServerSecurity{{"no", "key"}, {}});
   ASSERT_FALSE(server);
   EXPECT_EQ(server.error().exit_status, 2);

@@ -40,7 +40,7 @@ TEST(ServerSocket, AnswersAHeartbeatWithItsOwnTime) {
   EXPECT_GE(pong->server_time_s, kNow_s);
 }
 
-TEST(ServerSocket, CarriesCommandsInTheirOrderAndTheirReplies) {
+TEST(ServerSocket, CarriesCommandsInOrderWithTheirReplies) {
   const TemporaryFolder folder;
   ServerSocket server = bound(ipc_endpoint(folder));
   RawClient client(server.bound_url());
@@ -102,7 +102,7 @@ TEST(ServerSocket, EveryClientMayStop) {
   EXPECT_EQ(server.refused().not_in_control, 2u * (static_cast<unsigned>(kLastServerCommand) + 2u));
 }
 
-TEST(ServerSocket, TellsWhoHasControl) {
+TEST(ServerSocket, ReportsTheController) {
   ServerSocket server = bound();
   EXPECT_EQ(server.controller(), 0u);
   RawClient first(server.bound_url()), second(server.bound_url());
@@ -121,7 +121,7 @@ TEST(ServerSocket, TellsWhoHasControl) {
   EXPECT_EQ(server.controller(), 0u);
 }
 
-TEST(ServerSocket, FirstWhoWantsControlHasItAndOthersWatch) {
+TEST(ServerSocket, FirstClientGetsControlAndOthersWatch) {
   ServerSocket server = bound();
   RawClient first(server.bound_url()), second(server.bound_url());
   join(server, first);
@@ -154,7 +154,7 @@ TEST(ServerSocket, WatcherNeverGetsControl) {
   EXPECT_FALSE(beaten->has_control);
 }
 
-TEST(ServerSocket, GoodbyeFreesControlForTheNextAndTellsIt) {
+TEST(ServerSocket, GoodbyePassesControlToTheNextClient) {
   ServerSocket server = bound();
   RawClient first(server.bound_url()), second(server.bound_url());
   join(server, first);
@@ -174,7 +174,7 @@ TEST(ServerSocket, GoodbyeFreesControlForTheNextAndTellsIt) {
   EXPECT_EQ(welcome->session, session);
 }
 
-TEST(ServerSocket, SilentControllerLosesControlAndIsToldWhenItComesBack) {
+TEST(ServerSocket, NotifiesASilentControllerThatItLostControl) {
   ServerSocket server = bound();
   RawClient first(server.bound_url()), second(server.bound_url());
   join(server, first);
@@ -186,7 +186,7 @@ TEST(ServerSocket, SilentControllerLosesControlAndIsToldWhenItComesBack) {
   EXPECT_FALSE(first.next<Welcome>()->has_control);
 }
 
-TEST(ServerSocket, HelloOnAUsedSessionBeginsANewOneAndKeepsControl) {
+TEST(ServerSocket, HelloOnAUsedSessionStartsANewOneWithControl) {
   ServerSocket server = bound();
   RawClient client(server.bound_url()), other(server.bound_url());
   join(server, client);
@@ -202,7 +202,7 @@ TEST(ServerSocket, HelloOnAUsedSessionBeginsANewOneAndKeepsControl) {
   EXPECT_TRUE(beat(server, client)->has_control);
 }
 
-TEST(ServerSocket, RepeatedHelloThatWaitedInTheQueueKeepsTheSession) {
+TEST(ServerSocket, RepeatedHelloKeepsTheSession) {
   ServerSocket server = bound();
   RawClient client(server.bound_url());
   client.connect();
@@ -215,7 +215,7 @@ TEST(ServerSocket, RepeatedHelloThatWaitedInTheQueueKeepsTheSession) {
   EXPECT_EQ(server.refused().total(), 0u);
 }
 
-TEST(ServerSocket, MalformedAndTruncatedMessagesAreCountedAndTheRestGoesOn) {
+TEST(ServerSocket, CountsMalformedMessagesAndContinues) {
   ServerSocket server = bound();
   RawClient client(server.bound_url());
   join(server, client);
@@ -240,7 +240,7 @@ TEST(ServerSocket, OversizedMessageIsCountedAndDropped) {
   EXPECT_EQ(server.refused().total(), 1u);
 }
 
-TEST(ServerSocket, EnormousMessageCostsItsSenderTheConnectionAndNobodyElse) {
+TEST(ServerSocket, EnormousMessageDisconnectsOnlyItsSender) {
   ServerSocket server = bound();
   RawClient hostile(server.bound_url()), good(server.bound_url());
   join(server, good);
@@ -303,7 +303,7 @@ TEST(ServerSocket, ForeignConnectionCannotUseAnothersSession) {
   EXPECT_TRUE(beat(server, victim)->has_control);
 }
 
-TEST(ServerSocket, OneWatcherTooManyIsNotWelcomeUntilOneIsSilent) {
+TEST(ServerSocket, RefusesExcessWatchersUntilOneIsSilent) {
   ServerSocket server = bound();
   std::vector<std::unique_ptr<RawClient>> clients;
   for (std::size_t i = 0; i < kMostWatchers; ++i) {
@@ -325,7 +325,7 @@ TEST(ServerSocket, OneWatcherTooManyIsNotWelcomeUntilOneIsSilent) {
   EXPECT_TRUE(late.next<Welcome>());
 }
 
-TEST(ServerSocket, WatchersNeverLockAControllerOut) {
+TEST(ServerSocket, WatchersNeverBlockAController) {
   ServerSocket server = bound();
   std::vector<std::unique_ptr<RawClient>> watchers;
   for (std::size_t i = 0; i < kMostWatchers; ++i) {
@@ -337,7 +337,7 @@ TEST(ServerSocket, WatchersNeverLockAControllerOut) {
   EXPECT_TRUE(beat(server, controller)->has_control);
 }
 
-TEST(ServerSocket, CommandWithAWrongNumberIsAnsweredWithWhatIsWrong) {
+TEST(ServerSocket, ReplyNamesTheInvalidNumberOfACommand) {
   ServerSocket server = bound();
   RawClient client(server.bound_url());
   join(server, client);
@@ -355,7 +355,7 @@ TEST(ServerSocket, CommandWithAWrongNumberIsAnsweredWithWhatIsWrong) {
   }
 }
 
-TEST(ServerSocket, ClientOfAnotherVersionIsTold) {
+TEST(ServerSocket, RefusesAnotherVersionWithAReason) {
   ServerSocket server = bound();
   RawClient client(server.bound_url());
   client.connect();
@@ -384,7 +384,7 @@ TEST(ServerSocket, LongNameInHelloIsRefused) {
   EXPECT_TRUE(serve(server));
 }
 
-TEST(ServerSocket, KeepsFewConnectionsWhateverIsOpened) {
+TEST(ServerSocket, BoundsTheNumberOfConnections) {
   ServerSocket server = bound();
   // Each round: many connections, whose clients say Hello and are silent afterwards.
   double now_s = kNow_s;

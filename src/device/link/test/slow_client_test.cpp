@@ -9,7 +9,7 @@ namespace {
 
 using namespace testing;  // the link's
 
-TEST(SlowClient, MissesBatchesThatAreCounted) {
+TEST(SlowClient, MissesCountedBatches) {
   ServerSocket server = bound();
   RawClient slow(server.bound_url(), 1), quick(server.bound_url());
   join(server, slow);
@@ -68,7 +68,7 @@ TEST(SlowClient, GetsEveryReply) {
   EXPECT_EQ(reply->request, 1u);
 }
 
-TEST(SlowClient, LosesItsSessionWhereItDoesNotReadReplies) {
+TEST(SlowClient, LosesItsSessionIfItDoesNotReadReplies) {
   ServerSocket server = bound();
   RawClient slow(server.bound_url(), 1);
   join(server, slow);

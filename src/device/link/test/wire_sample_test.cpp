@@ -65,7 +65,7 @@ std::string type_text(const Value&) {
   return "enum";
 }
 
-TEST(WireSample, IsDescribedByTheSchemaAsByTheTicksFields) {
+TEST(WireSample, SchemaMatchesTheTickFields) {
   const telemetry::TickSample sample;
   std::vector<SchemaField> described;
   for_each_wire_field([&](const auto& field, std::size_t offset) {
@@ -75,7 +75,7 @@ TEST(WireSample, IsDescribedByTheSchemaAsByTheTicksFields) {
   EXPECT_EQ(described, schema_fields());
 }
 
-TEST(WireSample, GivesEveryFieldBackBitForBit) {
+TEST(WireSample, RoundTripsEveryFieldBitwise) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const auto sample = RandomMessages(seed).some<telemetry::TickSample>();
     Inspection inspection(0);
@@ -86,7 +86,7 @@ TEST(WireSample, GivesEveryFieldBackBitForBit) {
   }
 }
 
-TEST(WireSample, NumbersLieWhereTheGeneratedAccessorsReadThem) {
+TEST(WireSample, MatchesTheOffsetsOfGeneratedAccessors) {
   const auto sample = RandomMessages(41).some<telemetry::TickSample>();
   const wire::Sample packed = to_wire(sample);
   EXPECT_EQ(packed.time_s(), sample.time_s);

@@ -23,7 +23,7 @@ void fill(CommandQueue& queue) {
   }
 }
 
-TEST(CommandQueue, TakesAStopWhileItIsFull) {
+TEST(CommandQueue, AcceptsAStopWhenFull) {
   CommandQueue queue;
   ServoSwitches switches;
   fill(queue);
@@ -120,7 +120,7 @@ TEST(CommandQueue, LosesNoStopBetweenTwoThreads) {
   EXPECT_EQ(lost, 0);
 }
 
-TEST(CommandQueue, KeepsTheTimeOfTheOldestStopThatNoPeriodHasSeen) {
+TEST(CommandQueue, KeepsTheTimeOfTheOldestPendingStop) {
   CommandQueue queue;
   ServoSwitches switches;
   queue.stop(10);

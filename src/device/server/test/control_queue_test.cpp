@@ -9,7 +9,7 @@ ControlJob scene_job(std::uint32_t request) {
   return {1, request, link::LoadScene{}};
 }
 
-TEST(ControlQueue, ANewerSceneStopsTheOneThatIsLoaded) {
+TEST(ControlQueue, NewerSceneStopsTheLoadingOne) {
   ControlQueue queue;
   ControlJob job;
   queue.post(scene_job(1));
@@ -22,7 +22,7 @@ TEST(ControlQueue, ANewerSceneStopsTheOneThatIsLoaded) {
   EXPECT_TRUE(first.stop_requested());
 }
 
-TEST(ControlQueue, OfWaitingScenesTheNewestIsLoaded) {
+TEST(ControlQueue, LoadsOnlyTheNewestWaitingScene) {
   ControlQueue queue;
   ControlJob job;
   for (const std::uint32_t request : {1u, 2u, 3u}) queue.post(scene_job(request));
@@ -50,7 +50,7 @@ ControlJob parameters_of(std::size_t bytes) {
   return {1, 2, parameters};
 }
 
-TEST(ControlQueue, FlightsHaveTheirOwnPlacesAndComeFirst) {
+TEST(ControlQueue, FlightsUseReservedPlacesAndRunFirst) {
   ControlQueue queue;
   while (queue.post({1, 2, link::ServerCommand::kReconnect})) {
   }
@@ -76,7 +76,7 @@ TEST(ControlQueue, AFlightDoesNotStopALoading) {
   EXPECT_FALSE(queue.stop_token().stop_requested());
 }
 
-TEST(ControlQueue, TakesAtMostSoManyJobs) {
+TEST(ControlQueue, BoundsTheNumberOfJobs) {
   ControlQueue queue;
   for (std::size_t i = 0; i < kMostJobs; ++i) EXPECT_TRUE(queue.post({1, 2, link::ServerCommand::kReconnect}));
   EXPECT_FALSE(queue.post({1, 2, link::ServerCommand::kReconnect}));
@@ -85,7 +85,7 @@ TEST(ControlQueue, TakesAtMostSoManyJobs) {
   EXPECT_TRUE(queue.post({1, 2, link::ServerCommand::kReconnect}));
 }
 
-TEST(ControlQueue, TakesAtMostSoManyBytesOfText) {
+TEST(ControlQueue, BoundsTheBytesOfText) {
   constexpr std::size_t kLarge = 600'000;
   ControlQueue queue;
   std::size_t taken = 0;

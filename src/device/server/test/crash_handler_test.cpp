@@ -111,7 +111,7 @@ TEST_F(CrashHandlerTest, CrashOfTheRealTimeThreadEndsInZeroForce) {
   EXPECT_EQ(seen_->force_n, 0.0);
 }
 
-TEST_F(CrashHandlerTest, RealTimeThreadThatHangsDoesNotKeepTheForceOn) {
+TEST_F(CrashHandlerTest, HungRealTimeThreadEndsInZeroForce) {
   const int ended_by = signal_of_child([&] {
     SeenDevice device(*seen_);
     CrashHandler handler(device);
@@ -142,7 +142,7 @@ TEST_F(CrashHandlerTest, StackOverflowEndsInZeroForce) {
   EXPECT_EQ(seen_->force_n, 0.0);
 }
 
-TEST_F(CrashHandlerTest, PausedDeviceIsLeftToWhoHasIt) {
+TEST_F(CrashHandlerTest, LeavesAPausedDeviceToItsHolder) {
   SeenDevice device(*seen_);
   CrashHandler handler(device);
   EXPECT_FALSE(handler.takes_over(true));

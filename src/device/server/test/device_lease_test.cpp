@@ -20,7 +20,7 @@ class Period {
   DeviceLease::Request seen_;
 };
 
-TEST(DeviceLease, IsGrantedAfterAPeriodThatSawTheRequest) {
+TEST(DeviceLease, IsGrantedAfterAPeriodSawTheRequest) {
   DeviceLease lease;
   EXPECT_TRUE(Period(lease).end());
   const auto ticket = lease.ask();
@@ -33,7 +33,7 @@ TEST(DeviceLease, IsGrantedAfterAPeriodThatSawTheRequest) {
 }
 
 /// Two requests between two periods: with one flag a side the second saw the answer to the first.
-TEST(DeviceLease, AnAnswerToAnEarlierRequestIsNoneToALaterOne) {
+TEST(DeviceLease, AnswerAppliesOnlyToItsOwnRequest) {
   DeviceLease lease;
   const auto first = lease.ask();
   Period(lease).end();
@@ -48,7 +48,7 @@ TEST(DeviceLease, AnAnswerToAnEarlierRequestIsNoneToALaterOne) {
   EXPECT_TRUE(lease.is_leased(second));
 }
 
-TEST(DeviceLease, ALateAnswerToARequestThatWasGivenUpGrantsNothing) {
+TEST(DeviceLease, LateAnswerToACancelledRequestGrantsNothing) {
   DeviceLease lease;
   const auto given_up = lease.ask();
   Period late(lease);

@@ -25,7 +25,7 @@ Tried run(DeviceTrial& trial, double& now_s, double for_s) {
   return tried;
 }
 
-TEST(DeviceTrial, GivesNoForceThatNobodyAskedFor) {
+TEST(DeviceTrial, WritesNoForceWithoutARequest) {
   testing::ScriptedDevice device(testing::device_preset("omni"));
   DeviceTrial trial(device, 1000.0);
   double now_s = 1.0;
@@ -34,7 +34,7 @@ TEST(DeviceTrial, GivesNoForceThatNobodyAskedFor) {
   EXPECT_EQ(tried.last.fault, telemetry::GateFault::kNone);
 }
 
-TEST(DeviceTrial, PushesUpwardsOnceAndNoHarderThanTheDeviceBears) {
+TEST(DeviceTrial, PushesUpOnceWithinTheDeviceLimit) {
   for (const char* name : {"omni", "premium"}) {
     const haptics::DevicePreset preset = testing::device_preset(name);
     testing::ScriptedDevice device(preset);
@@ -53,7 +53,7 @@ TEST(DeviceTrial, PushesUpwardsOnceAndNoHarderThanTheDeviceBears) {
   }
 }
 
-TEST(DeviceTrial, AnUnpluggedDeviceIsToldAndAPushTriesAgain) {
+TEST(DeviceTrial, ReportsAnUnpluggedDeviceAndRetriesOnAPush) {
   testing::ScriptedDevice device(testing::device_preset("omni"));
   DeviceTrial trial(device, 1000.0);
   double now_s = 1.0;

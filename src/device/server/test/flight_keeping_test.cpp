@@ -64,7 +64,7 @@ struct FlightRig {
   std::optional<link::HapticClient> client;
 };
 
-TEST(FlightKeeping, TellsAtTheStartThatNoRecordCanBeWritten) {
+TEST(FlightKeeping, WarnsAtStartIfRecordsCannotBeWritten) {
   FlightRig rig("/proc/none");
   EXPECT_TRUE(wait_for([&] { return rig.client->view().status.ticks > 0; }));
   const std::string warning = rig.client->view().status.warning;
@@ -72,7 +72,7 @@ TEST(FlightKeeping, TellsAtTheStartThatNoRecordCanBeWritten) {
   EXPECT_NE(warning.find("/proc/none"), std::string::npos) << warning;
 }
 
-TEST(FlightKeeping, AFaultWhileASceneIsLoadedKeepsItsRecord) {
+TEST(FlightKeeping, KeepsTheRecordOfAFaultDuringALoad) {
   const TemporaryFolder flights;
   FlightRig rig(flights.path());
   rig.client->send(testing::layered_request());

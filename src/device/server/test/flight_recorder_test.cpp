@@ -48,7 +48,7 @@ TEST(FlightRecorder, GivesTheNextFaultToo) {
   EXPECT_EQ(flights, 3);
 }
 
-TEST(WriteFlight, WritesARowAPeriodUnderAHeader) {
+TEST(WriteFlight, WritesAHeaderAndOneRowPerPeriod) {
   const TemporaryFolder folder;
   std::vector<ServoRecord> flight(3, record_at(7, telemetry::GateFault::kDeviceLost));
   flight[0].sample.gate_fault = telemetry::GateFault::kNone;
@@ -84,7 +84,7 @@ TEST(WriteFlight, KeepsTheNewestFilesOfItsFolderOnly) {
   EXPECT_TRUE(std::filesystem::exists(folder / "session.csv"));
 }
 
-TEST(WriteFlight, KeepsWithinItsBytesButAlwaysTheNewest) {
+TEST(WriteFlight, BoundsTotalBytesButKeepsTheNewest) {
   const TemporaryFolder folder;
   std::vector<std::filesystem::path> paths;
   for (int i = 0; i < 4; ++i) {
@@ -97,7 +97,7 @@ TEST(WriteFlight, KeepsWithinItsBytesButAlwaysTheNewest) {
   EXPECT_TRUE(std::filesystem::exists(paths[3])) << "the newest stays even if it is larger than the quota";
 }
 
-TEST(FlightRecorder, GivesAFaultOfTheLastMomentsAtTheEnd) {
+TEST(FlightRecorder, FinishReturnsAFaultOfTheLastMoments) {
   FlightRecorder recorder(1000.0);
   EXPECT_FALSE(recorder.finish());
   for (std::uint64_t tick = 0; tick < 50; ++tick) recorder.add(record_at(tick, telemetry::GateFault::kNone));
@@ -149,7 +149,7 @@ TEST(FlightFolder, IsCheckedAtTheStart) {
   }
 }
 
-TEST(WriteFlight, SaysThatAFolderCannotBeWritten) {
+TEST(WriteFlight, FailsForAnUnwritableFolder) {
   EXPECT_FALSE(write_flight("/proc/nowhere", "20260101T000000Z", {record_at(1, telemetry::GateFault::kDeviceLost)}));
 }
 

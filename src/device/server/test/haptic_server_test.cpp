@@ -100,7 +100,7 @@ TEST(HapticServer, RefusesToStartWithoutAScene) {
   EXPECT_NE(started.error().text().find("scene"), std::string::npos);
 }
 
-TEST(HapticServer, TellsWhatIsWrongWithAScene) {
+TEST(HapticServer, ReportsWhatIsWrongWithAScene) {
   ServerRig rig;
   link::HapticClient client = rig.connect();
   link::LoadScene request = testing::layered_request();
@@ -113,7 +113,7 @@ TEST(HapticServer, TellsWhatIsWrongWithAScene) {
   EXPECT_FALSE(client.ask(request, kServerPatience)) << "this server holds the needle";
 }
 
-TEST(HapticServer, LetsAWatcherSeeButNotCommand) {
+TEST(HapticServer, WatcherReceivesTicksButCannotCommand) {
   ServerRig rig;
   link::HapticClient master = rig.connect();
   ASSERT_TRUE(master.ask(testing::layered_request(), kServerPatience));
@@ -122,7 +122,7 @@ TEST(HapticServer, LetsAWatcherSeeButNotCommand) {
   EXPECT_TRUE(wait_for([&] { return watcher.newest().has_value(); }));
 }
 
-TEST(HapticServer, TakesForcesBackWhenTheClientInControlLeaves) {
+TEST(HapticServer, SwitchesForcesOffWhenTheControllerLeaves) {
   ServerRig rig;
   {
     link::HapticClient client = rig.connect();
@@ -134,7 +134,7 @@ TEST(HapticServer, TakesForcesBackWhenTheClientInControlLeaves) {
   EXPECT_TRUE(wait_for([&] { return next.view().status.state == link::ServerState::kReady; }));
 }
 
-TEST(HapticServer, WarnsOfAClientsWindowThatStandsStill) {
+TEST(HapticServer, WarnsOfAStalledClientWindow) {
   ServerRig rig;
   link::ClientOptions options;
   options.endpoint = rig.server().url();
@@ -149,7 +149,7 @@ TEST(HapticServer, WarnsOfAClientsWindowThatStandsStill) {
   }));
 }
 
-TEST(HapticServer, CountsBadMessagesAndKeepsItsForcesMeanwhile) {
+TEST(HapticServer, CountsBadMessagesAndKeepsForcesOn) {
   ServerRig rig;
   link::HapticClient client = rig.connect();
   ASSERT_TRUE(client.ask(testing::layered_request(), kServerPatience));
@@ -182,7 +182,7 @@ TEST(HapticServer, CountsBadMessagesAndKeepsItsForcesMeanwhile) {
   EXPECT_EQ(client.view().status.state, link::ServerState::kRunning);
 }
 
-TEST(HapticServer, EndsWhatHasStartedWhereAThreadDoesNotStart) {
+TEST(HapticServer, StopsStartedThreadsWhenOneFailsToStart) {
   for (const char* failing : {"control", "link", "real-time"}) {
     const TemporaryFolder folder;
     ServerOptions options;
@@ -235,7 +235,7 @@ class ReopenedDevice final : public devices::HapticDevice {
   double last_n_ = 0.0;
 };
 
-TEST(HapticServer, FadesBeforeADeviceIsOpenedAgainAndComesBackSoftly) {
+TEST(HapticServer, FadesForcesAroundADeviceReopen) {
   const TemporaryFolder folder;
   ServerOptions options;
   options.endpoint = *link::parse_endpoint("ipc://" + (folder / "needle").string());
@@ -266,7 +266,7 @@ TEST(HapticServer, FadesBeforeADeviceIsOpenedAgainAndComesBackSoftly) {
   EXPECT_LT(log.largest_rise_n, 0.5) << "N in one period";
 }
 
-TEST(HapticServer, RefusesARateItCannotKeep) {
+TEST(HapticServer, RefusesAnUnsupportedRate) {
   const TemporaryFolder folder;
   ServerOptions options;
   options.endpoint = *link::parse_endpoint("ipc://" + (folder / "needle").string());

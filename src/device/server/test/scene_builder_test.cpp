@@ -31,7 +31,7 @@ SceneBuilder make_builder(const char* device = "premium") {
   return {layered_opener(), data_file("tissues.toml"), device_preset(device)};
 }
 
-TEST(SceneBuilder, BuildsWhatIsAskedFor) {
+TEST(SceneBuilder, BuildsTheRequestedScene) {
   SceneBuilder builder = make_builder();
   const auto scene = builder.load(layered_request("proxy"));
   ASSERT_TRUE(scene) << scene.error().text();
@@ -40,7 +40,7 @@ TEST(SceneBuilder, BuildsWhatIsAskedFor) {
   EXPECT_LT((scene->scene->gravity_P - Vec3::UnitZ()).norm(), 1e-12) << "down in the room is into the layers";
 }
 
-TEST(SceneBuilder, SaysWhatIsWrongAndKeepsTheLastScene) {
+TEST(SceneBuilder, ReportsErrorsAndKeepsTheLastScene) {
   SceneBuilder builder = make_builder();
   EXPECT_FALSE(builder.change(tissue("liver.k=0.5"))) << "there is none yet";
   ASSERT_TRUE(builder.load(layered_request()));
@@ -59,7 +59,7 @@ TEST(SceneBuilder, SaysWhatIsWrongAndKeepsTheLastScene) {
   EXPECT_TRUE(builder.change(tissue("liver.k=0.5")));
 }
 
-TEST(SceneBuilder, StopsBetweenItsStepsAndKeepsTheLastScene) {
+TEST(SceneBuilder, StopsBetweenStepsAndKeepsTheLastScene) {
   std::stop_source source;
   bool is_stopping = false;
   const PatientOpener opener = [&](const std::string& name, std::uint64_t seed, const Progress& progress) {
@@ -77,7 +77,7 @@ TEST(SceneBuilder, StopsBetweenItsStepsAndKeepsTheLastScene) {
   EXPECT_EQ(builder.request().patient_seed, layered_request().patient_seed);
 }
 
-TEST(SceneBuilder, RefusesAPatientThatMemoryDoesNotHold) {
+TEST(SceneBuilder, RefusesAPatientThatExceedsMemory) {
   bool is_short = false;
   const PatientOpener opener = [&](const std::string& name, std::uint64_t seed, const Progress& progress) {
     if (is_short) throw std::bad_alloc();
@@ -126,7 +126,7 @@ TEST(SceneBuilder, ChangesAllNumbersOrNone) {
   EXPECT_FALSE(builder.change({.coupling_stiffness_n_per_mm = std::numeric_limits<double>::quiet_NaN()}));
 }
 
-TEST(SceneBuilder, NumbersOfTissuesReplaceThoseOfEarlierChanges) {
+TEST(SceneBuilder, NewTissueNumbersReplaceEarlierChanges) {
   SceneBuilder builder = make_builder();
   const auto loaded = builder.load(layered_request());
   ASSERT_TRUE(loaded);
@@ -146,7 +146,7 @@ TEST(SceneBuilder, NumbersOfTissuesReplaceThoseOfEarlierChanges) {
   EXPECT_EQ(fp_n(reset), fp_n(loaded));
 }
 
-TEST(SceneBuilder, StartsAnewWithAnotherForceModel) {
+TEST(SceneBuilder, RestartsWithAnotherForceModel) {
   SceneBuilder builder = make_builder();
   ASSERT_TRUE(builder.load(layered_request()));
   const auto scene = builder.change({.force_model = "combined"});
@@ -154,7 +154,7 @@ TEST(SceneBuilder, StartsAnewWithAnotherForceModel) {
   EXPECT_FALSE(scene->continues);
 }
 
-TEST(SceneBuilder, ClipsTheCouplingToTheDeviceOverTheWorkspaceScale) {
+TEST(SceneBuilder, ClipsTheCouplingToTheScaledDeviceLimit) {
   haptics::DevicePreset preset = device_preset("premium");
   preset.motion_scale = 5.0;
   SceneBuilder builder(layered_opener(), data_file("tissues.toml"), preset);
@@ -164,7 +164,7 @@ TEST(SceneBuilder, ClipsTheCouplingToTheDeviceOverTheWorkspaceScale) {
   EXPECT_LE(scene->scene->options.coupling.stiffness_n_per_mm, most + 1e-12);
 }
 
-TEST(SceneBuilder, RefusesACouplingThatTheDeviceDoesNotBear) {
+TEST(SceneBuilder, RefusesACouplingBeyondTheDeviceLimits) {
   for (const char* device : {"premium", "omni", "omega7", "falcon", "mouse"}) {
     const haptics::DevicePreset preset = device_preset(device);
     SceneBuilder builder = make_builder(device);

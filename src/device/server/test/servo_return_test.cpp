@@ -41,7 +41,7 @@ class Return : public ::testing::Test {
   double pressed_n = 0.0;
 };
 
-TEST_F(Return, OfADeviceThatWasLent) {
+TEST_F(Return, IsSoftAfterALease) {
   rig.input.is_wanted = false;
   int periods = 0;
   while (rig.servo.gives_force() && periods < 1000) {
@@ -60,13 +60,13 @@ TEST_F(Return, OfADeviceThatWasLent) {
   expect_soft_return();
 }
 
-TEST_F(Return, OfADeviceThatWasLentInTheMiddleOfAForce) {
+TEST_F(Return, IsSoftAfterALeaseTakenUnderForce) {
   rig.servo.resume();
   rig.last_n = 0.0;  // whoever had it has written zero
   expect_soft_return();
 }
 
-TEST_F(Return, OfALostDevice) {
+TEST_F(Return, IsSoftAfterALostDevice) {
   rig.device.reading.status = devices::DeviceStatus::kDisconnected;
   for (int i = 0; i < 50; ++i) rig.step();
   EXPECT_EQ(rig.last_n, 0.0);
@@ -77,7 +77,7 @@ TEST_F(Return, OfALostDevice) {
   expect_soft_return();
 }
 
-TEST_F(Return, OfAResetFault) {
+TEST_F(Return, IsSoftAfterAFaultReset) {
   rig.input.busy_s = rig.input.dt_s = 0.06;
   EXPECT_EQ(rig.step().sample.gate_fault, telemetry::GateFault::kLoopSlow);
   rig.input.dt_s = 0.001;
@@ -88,7 +88,7 @@ TEST_F(Return, OfAResetFault) {
   expect_soft_return();
 }
 
-TEST_F(Return, OfAnotherScene) {
+TEST_F(Return, IsSoftWithAnotherScene) {
   auto other = rig.builder.load(testing::layered_request("proxy"));
   ASSERT_TRUE(other);
   rig.input.scene = &*other;
@@ -98,7 +98,7 @@ TEST_F(Return, OfAnotherScene) {
   EXPECT_LT(rig.last_n, 0.7) << "found inside: little more than the stylus' weight";
 }
 
-TEST_F(Return, OfForcesThatWereStopped) {
+TEST_F(Return, IsSoftAfterStoppedForces) {
   rig.input.is_wanted = false;
   rig.hold(0.5);
   EXPECT_EQ(rig.last_n, 0.0);
@@ -106,7 +106,7 @@ TEST_F(Return, OfForcesThatWereStopped) {
   expect_soft_return();
 }
 
-TEST_F(Return, OfASilentClient) {
+TEST_F(Return, IsSoftAfterASilentClient) {
   rig.input.silence_s = 1.0;
   rig.hold(0.5);
   EXPECT_EQ(rig.last_n, 0.0);
@@ -116,7 +116,7 @@ TEST_F(Return, OfASilentClient) {
   EXPECT_LT(rig.largest_rise_n, kLargestStep_n);
 }
 
-TEST_F(Return, OfAStylusThatWasPutElsewhere) {
+TEST_F(Return, IsSoftAfterTheStylusIsPlaced) {
   link::HandTarget put;
   put.X_PN = rig.scene.scene->X_PW * needle_at_depth(6.0) * rig.scene.scene->X_SN;
   put.is_placed = put.is_rigid = true;

@@ -18,14 +18,14 @@ using testing::has_limit;
 using testing::needle_at_depth;
 using testing::ServoRig;
 
-TEST(Servo, GivesNoForceBeforeItIsAskedFor) {
+TEST(Servo, WritesNoForceBeforeItIsRequested) {
   ServoRig rig;
   rig.input.is_wanted = false;
   rig.move_to(3.0, 20.0);
   EXPECT_EQ(rig.most_n, 0.0);
 }
 
-TEST(Servo, LetsTheHandFeelTheSkinAndItsGivingWay) {
+TEST(Servo, RendersSkinContactAndPuncture) {
   ServoRig rig;
   rig.start();
   EXPECT_EQ(rig.servo.mode(), telemetry::GateMode::kOn);
@@ -44,7 +44,7 @@ TEST(Servo, LetsTheHandFeelTheSkinAndItsGivingWay) {
   }
 }
 
-TEST(Servo, LeavesTheTicksWrenchAsItIsWhereNothingIsWrong) {
+TEST(Servo, PassesTheTickWrenchUnchangedWithoutFaults) {
   ServoRig rig;
   rig.start();
   int untouched = 0;
@@ -56,7 +56,7 @@ TEST(Servo, LeavesTheTicksWrenchAsItIsWhereNothingIsWrong) {
   EXPECT_GT(untouched, 2500) << "of 3000 periods";
 }
 
-TEST(Servo, FadesWhenTheClientIsSilentAndComesBackWithoutAJump) {
+TEST(Servo, FadesOnASilentClientAndReturnsWithoutAJump) {
   ServoRig rig;
   rig.start();
   rig.move_to(2.0, 10.0);
@@ -77,7 +77,7 @@ TEST(Servo, FadesWhenTheClientIsSilentAndComesBackWithoutAJump) {
   EXPECT_LT(rig.largest_rise_n, 0.05 * before_n);
 }
 
-TEST(Servo, LatchesAFaultWhenTheDeviceIsGoneAndGoesOnAfterAReset) {
+TEST(Servo, LatchesALostDeviceUntilAReset) {
   ServoRig rig;
   rig.start();
   rig.move_to(2.0, 10.0);
@@ -93,7 +93,7 @@ TEST(Servo, LatchesAFaultWhenTheDeviceIsGoneAndGoesOnAfterAReset) {
   EXPECT_EQ(rig.servo.mode(), telemetry::GateMode::kOn);
 }
 
-TEST(Servo, TakesARefusedWriteAsALostDevice) {
+TEST(Servo, TreatsRefusedWritesAsALostDevice) {
   ServoRig rig;
   rig.start();
   rig.device.takes_writes = false;
@@ -101,7 +101,7 @@ TEST(Servo, TakesARefusedWriteAsALostDevice) {
   EXPECT_EQ(rig.step().sample.gate_fault, telemetry::GateFault::kDeviceLost);
 }
 
-TEST(Servo, LatchesAFaultOnAPoseThatIsNone) {
+TEST(Servo, LatchesAFaultOnANonFinitePose) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e200}) {
     ServoRig rig;
     rig.start();
@@ -113,7 +113,7 @@ TEST(Servo, LatchesAFaultOnAPoseThatIsNone) {
   }
 }
 
-TEST(Servo, NoticesAnEncoderThatStandsStillUnderForce) {
+TEST(Servo, DetectsAStuckEncoderUnderForce) {
   ServoRig rig;
   rig.start();
   rig.move_to(3.0, 10.0);
@@ -146,7 +146,7 @@ TEST(Servo, NeverAllocates) {
   EXPECT_EQ(guard.count(), 0U);
 }
 
-TEST(Servo, MakesTheSameOfTheSame) {
+TEST(Servo, IsDeterministic) {
   const auto run = [] {
     ServoRig rig("premium", "proxy");
     rig.start();
@@ -158,7 +158,7 @@ TEST(Servo, MakesTheSameOfTheSame) {
   EXPECT_EQ(first.torque_nmm, second.torque_nmm);
 }
 
-TEST(Servo, GoesOnWithTheInsertionWhenOnlyNumbersChange) {
+TEST(Servo, KeepsTheInsertionWhenOnlyNumbersChange) {
   ServoRig rig;
   rig.start();
   rig.move_to(30.0, 20.0);
@@ -173,7 +173,7 @@ TEST(Servo, GoesOnWithTheInsertionWhenOnlyNumbersChange) {
   EXPECT_FALSE(has_limit(records, telemetry::LimitReason::kSafeStart));
 }
 
-TEST(Servo, GoesThroughTheSafeStartWithAnotherScene) {
+TEST(Servo, RunsTheSafeStartForAnotherScene) {
   ServoRig rig;
   rig.start();
   rig.move_to(30.0, 20.0);
@@ -187,7 +187,7 @@ TEST(Servo, GoesThroughTheSafeStartWithAnotherScene) {
 }
 
 /// Without forces a stylus sags across the needle's channel. The needle begins where it is put, not where it sagged.
-TEST(Servo, BeginsAnewWhereTheNeedleIsPut) {
+TEST(Servo, RestartsWhereTheNeedleIsPlaced) {
   ServoRig rig;
   rig.input.is_wanted = false;
   const Pose X_DS_put = testing::needle_at_depth(20.0);
@@ -209,7 +209,7 @@ TEST(Servo, BeginsAnewWhereTheNeedleIsPut) {
   EXPECT_NEAR(records.back().sample.depth_mm, 20.0, 0.1);
 }
 
-TEST(Servo, ScalesForcesForAWeakDeviceAndStaysWithinItsLimits) {
+TEST(Servo, ScalesForcesToAWeakDevice) {
   ServoRig strong, weak("omni");
   for (ServoRig* rig : {&strong, &weak}) {
     rig->start();
@@ -219,7 +219,7 @@ TEST(Servo, ScalesForcesForAWeakDeviceAndStaysWithinItsLimits) {
   EXPECT_LT(weak.most_n, 0.7 * strong.most_n);
 }
 
-TEST(Servo, LatchesAFaultAfterALongHoleInTimeAndTakesAShortOne) {
+TEST(Servo, LatchesAFaultAfterALongTimeGapButNotAShortOne) {
   for (const double hole_s : {0.045, 3.0}) {
     ServoRig rig;
     rig.start();
@@ -237,7 +237,7 @@ TEST(Servo, LatchesAFaultAfterALongHoleInTimeAndTakesAShortOne) {
   }
 }
 
-TEST(Servo, CallsADeviceSilentOnlyForTimeInWhichItsOwnLoopRan) {
+TEST(Servo, CountsDeviceSilenceOnlyWhileItsLoopRuns) {
   for (const bool is_back : {true, false}) {
     ServoRig rig;
     rig.start();
@@ -261,7 +261,7 @@ TEST(Servo, CallsADeviceSilentOnlyForTimeInWhichItsOwnLoopRan) {
 }
 
 /// A slow loop finds an unplugged device after five of its periods, whatever their length.
-TEST(Servo, FindsASilentDeviceInASlowLoop) {
+TEST(Servo, DetectsASilentDeviceInASlowLoop) {
   const double max_unread_s = haptics::GateParams{}.max_unread_s;
   for (const auto& [period_s, expected] : {std::pair{0.00099, 21}, {0.003, 7}, {0.006, 5}, {0.1, 5}}) {
     detail::ReadingAge age;
@@ -307,7 +307,7 @@ TEST(Servo, WeakensTheCouplingOfASlowLoopAtOnce) {
   }
 }
 
-TEST(Servo, ExcusesSingleHolesOfABusyMachine) {
+TEST(Servo, ToleratesSingleStallsOfABusyMachine) {
   ServoRig rig;
   rig.start();
   rig.move_to(3.0, 10.0);
@@ -320,7 +320,7 @@ TEST(Servo, ExcusesSingleHolesOfABusyMachine) {
   }
 }
 
-TEST(Servo, LatchesAtOnceOnAJumpThatNoHandMakes) {
+TEST(Servo, LatchesImmediatelyOnAnImpossibleJump) {
   for (const double jump_mm : {4.0, 10.0, 50.0, 100.0}) {
     ServoRig rig;
     rig.start();
@@ -346,7 +346,7 @@ TEST(Servo, LatchesAtOnceOnAJumpThatNoHandMakes) {
   }
 }
 
-TEST(Servo, NeverExceedsTheDeviceWhateverTheHandDoes) {
+TEST(Servo, NeverExceedsDeviceLimitsForAnyHandMotion) {
   for (const char* model : {"insertion", "proxy", "combined"}) {
     ServoRig rig("premium", model);
     rig.start();

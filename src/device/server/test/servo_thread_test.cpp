@@ -98,7 +98,7 @@ class ServoThreadRig {
 
 constexpr int kPeriods = 300;  ///< More than the fade (200 ms), and than a full queue takes (8 ms).
 
-TEST(ServoThread, AStopWhileTheQueueIsFullIsSeen) {
+TEST(ServoThread, AppliesAStopWhenTheQueueIsFull) {
   ServoThreadRig rig;
   ASSERT_TRUE(rig.start_forces());
   rig.device.is_blocked = true;
@@ -116,7 +116,7 @@ TEST(ServoThread, AStopWhileTheQueueIsFullIsSeen) {
   EXPECT_FALSE(rig.shared.is_wanted) << "a kStart from before the stop took effect";
 }
 
-TEST(ServoThread, AStopWhileTheDeviceIsLentIsSeenAtOnce) {
+TEST(ServoThread, AppliesAStopDuringALeaseAtOnce) {
   ServoThreadRig rig;
   ASSERT_TRUE(rig.start_forces());
   const std::uint64_t ticket = rig.shared.lease.ask();
@@ -137,7 +137,7 @@ TEST(ServoThread, AStopWhileTheDeviceIsLentIsSeenAtOnce) {
   EXPECT_EQ(rig.device.force_n, 0.0);
 }
 
-TEST(ServoThread, ANewSceneAfterAStopBringsNoForce) {
+TEST(ServoThread, NewSceneAfterAStopKeepsForcesOff) {
   ServoThreadRig rig;
   ASSERT_TRUE(rig.start_forces());
   rig.shared.commands.stop(realtime::now_ns());
@@ -153,7 +153,7 @@ TEST(ServoThread, ANewSceneAfterAStopBringsNoForce) {
   EXPECT_EQ(rig.device.force_n, 0.0);
 }
 
-TEST(ServoThread, APlacementIsNotHiddenByALaterHand) {
+TEST(ServoThread, LaterHandTargetDoesNotDropAPlacement) {
   ServoThreadRig rig;
   rig.device.is_blocked = true;
   ASSERT_TRUE(wait_for([&] { return rig.device.writes > 0; }));

@@ -98,7 +98,7 @@ SceneBuilder builder_with_bone(const haptics::DevicePreset& preset) {
 
 // 1 N s/mm is 200 times what the device bears. In soft tissue the needle slides along with the device and nothing
 // vibrates; bone holds it.
-TEST(ServoVibration, ADamperThatTheDeviceDoesNotBearIsAFault) {
+TEST(ServoVibration, FaultsOnADamperBeyondTheDeviceLimit) {
   const haptics::DevicePreset preset = testing::device_preset();
   SceneBuilder builder = builder_with_bone(preset);
   const ServoScene good = load(builder, "proxy");
@@ -118,7 +118,7 @@ TEST(ServoVibration, ADamperThatTheDeviceDoesNotBearIsAFault) {
 
 class GoodMotion : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(GoodMotion, IsNoVibrationAndNoImpossibleMotion) {
+TEST_P(GoodMotion, RaisesNoVibrationOrMotionFault) {
   const haptics::DevicePreset preset = testing::device_preset(GetParam());
   SceneBuilder builder = builder_for(preset);
   Random random(3);
@@ -154,7 +154,7 @@ TEST_P(GoodMotion, IsNoVibrationAndNoImpossibleMotion) {
   }
 }
 
-TEST_P(GoodMotion, PalpationIsNoVibration) {
+TEST_P(GoodMotion, PalpationRaisesNoVibrationFault) {
   const haptics::DevicePreset preset = testing::device_preset(GetParam());
   for (const char* tool : {"finger", "probe"}) {
     SceneBuilder builder = builder_for(preset);

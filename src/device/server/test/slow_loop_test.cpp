@@ -42,7 +42,7 @@ class SlowLoop : public ::testing::TestWithParam<std::string> {
   ServoScene scene;
 };
 
-TEST_P(SlowLoop, EndsAtZeroWithinFiftyMillisecondsAndAPeriod) {
+TEST_P(SlowLoop, ReachesZeroForceWithin50MsAndOnePeriod) {
   const SlowLoopOutcome healthy = run(0.0);
   ASSERT_EQ(healthy.fault, telemetry::GateFault::kNone);
   ASSERT_EQ(healthy.least_share, 1.0);
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(EveryDevice, SlowLoop,
                                            "falcon", "inverse3", "mouse", "gamepad", "spacemouse"));
 
 /// The list above is that of the file.
-TEST(SlowLoops, KnowEveryDevice) {
+TEST(SlowLoops, CoverEveryDevice) {
   const auto presets = haptics::load_device_presets(testing::data_file("devices.toml"));
   ASSERT_TRUE(presets);
   EXPECT_EQ(presets->size(), 12U) << "a new row of data/devices.toml belongs into EveryDevice";

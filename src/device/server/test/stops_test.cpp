@@ -66,7 +66,7 @@ class FloodingClient {
   std::uint32_t request_ = 0;
 };
 
-TEST(Stops, AStopAfterAFloodOfStartsIsNotLost) {
+TEST(Stops, AreNotLostAfterAFloodOfStarts) {
   ServerRig rig;
   link::HapticClient watcher = rig.connect(false);
   FloodingClient client(rig.server().url());
@@ -79,7 +79,7 @@ TEST(Stops, AStopAfterAFloodOfStartsIsNotLost) {
   }
 }
 
-TEST(Stops, AWatcherMayStopButNotStart) {
+TEST(Stops, AreAllowedToAWatcherThatCannotStart) {
   ServerRig rig;
   link::HapticClient client = rig.connect();
   ASSERT_TRUE(client.ask(testing::layered_request(), kServerPatience));
@@ -97,7 +97,7 @@ TEST(Stops, AWatcherMayStopButNotStart) {
   }
 }
 
-TEST(Stops, GoodbyeStopsAlsoWhenNobodyIsLeftToControl) {
+TEST(Stops, GoodbyeOfTheLastControllerStopsForces) {
   ServerRig rig;
   link::HapticClient watcher = rig.connect(false);
   {
@@ -128,7 +128,7 @@ TEST(Stops, TheNextClientGetsControlWithForcesOff) {
   EXPECT_TRUE(turn_on(next));
 }
 
-TEST(Stops, AStartByWhichItsClientGetsControlTakesEffect) {
+TEST(Stops, StartThatAcquiresControlTakesEffect) {
   ServerRig rig;
   link::HapticClient watcher = rig.connect(false);
   FloodingClient first(rig.server().url()), second(rig.server().url());
@@ -153,7 +153,7 @@ TEST(Stops, ASilentClientLosesControlWithForcesOff) {
   EXPECT_TRUE(goes_off(next));
 }
 
-TEST(Stops, ANewSessionOfTheClientInControlBeginsWithForcesOff) {
+TEST(Stops, NewControllerSessionStartsWithForcesOff) {
   ServerRig rig;
   link::HapticClient watcher = rig.connect(false);
   FloodingClient client(rig.server().url());

@@ -77,7 +77,7 @@ TEST(StylusWeighing, HoldsEveryPresetQuietly) {
   }
 }
 
-TEST(StylusWeighing, IsTheSameAtEveryRate) {
+TEST(StylusWeighing, IsIndependentOfTheRate) {
   for (const double rate_hz : {250.0, 500.0, 4000.0})
     expect_weight(weigh(testing::device_preset("delta6"), weighing(0.7), kLevel, rate_hz), 0.7,
                   fmt::format("{} Hz", rate_hz));
@@ -143,7 +143,7 @@ double drift_mm(const haptics::DevicePreset& compensated, const SimulatedDeviceP
   return (device.X_DS().p() - released_D).norm();
 }
 
-TEST(StylusWeighing, AWeighedAttachmentSinksNoLonger) {
+TEST(StylusWeighing, CompensatesAWeighedAttachment) {
   for (const char* name : {"premium", "desktop", "sigma7", "inverse3"}) {
     haptics::DevicePreset preset = testing::device_preset(name);
     const SimulatedDeviceParams params = weighing(preset.capability.stylus_weight_n + kAttachment_n, 10.0);

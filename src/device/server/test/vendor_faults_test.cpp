@@ -141,7 +141,7 @@ void run_trial(const VendorFault& expected, Trial& trial) {
   trial.violations = hardware.violations();
 }
 
-TEST_P(VendorFaults, EndAtZeroAndBreakNoRule) {
+TEST_P(VendorFaults, EndAtZeroForceWithoutRuleViolations) {
   const VendorFault& expected = GetParam();
   Trial trial;
   for (int attempt = 0; attempt < 3 && trial.broken_s == 0.0; ++attempt) {

@@ -10,14 +10,14 @@
 namespace trocar::server {
 namespace {
 
-TEST(StylusWeighingRefuses, ADeviceWithoutForceOrThatCarriesItself) {
+TEST(StylusWeighingRefuses, ADeviceWithoutForceOrWithSelfSupport) {
   EXPECT_EQ(refusal_of(weigh(testing::device_preset("mouse"), {})), WeighRefusal::kNoForce);
   haptics::DevicePreset carried = testing::device_preset("omega6");
   carried.capability.stylus_weight_n = 0.0;
   EXPECT_EQ(refusal_of(weigh(carried, {})), WeighRefusal::kCarriedByDevice);
 }
 
-TEST(StylusWeighingRefuses, AWeightThatTheDeviceCannotHoldForLong) {
+TEST(StylusWeighingRefuses, AWeightAboveTheContinuousForce) {
   const haptics::DevicePreset omni = testing::device_preset("omni");  // continuously 0.88 N
   EXPECT_EQ(refusal_of(weigh(omni, weighing(0.85))), WeighRefusal::kNone);
   for (const double weight_n : {0.95, 1.2, 2.0}) {
@@ -125,7 +125,7 @@ TEST(StylusWeighing, AGateFaultEndsItAtZeroForce) {
   }
 }
 
-TEST(StylusWeighing, FollowsAFaultThatIsOver) {
+TEST(StylusWeighing, RunsAfterAClearedFault) {
   VirtualHapticDevice inner(testing::device_preset("omni"), weighing(0.6));
   testing::ScriptedDevice gone(testing::device_preset("omni"));
   gone.reading.status = devices::DeviceStatus::kDisconnected;
@@ -139,7 +139,7 @@ TEST(StylusWeighing, FollowsAFaultThatIsOver) {
   EXPECT_GT(scale.step().written_D.force_n.z(), 0.4) << "the preset's weight";
 }
 
-TEST(WeighReport, EveryRefusalSaysWhatAndWhatToDoInOneLine) {
+TEST(WeighReport, EveryRefusalStatesCauseAndAdviceInOneLine) {
   for (auto refusal = WeighRefusal::kNoForce; refusal <= WeighRefusal::kPullsUp;
        refusal = static_cast<WeighRefusal>(static_cast<int>(refusal) + 1)) {
     WeighResult result;
@@ -151,7 +151,7 @@ TEST(WeighReport, EveryRefusalSaysWhatAndWhatToDoInOneLine) {
   }
 }
 
-TEST(WeighReport, SaysWhyThereIsNoLever) {
+TEST(WeighReport, StatesWhyThereIsNoLever) {
   WeighResult result;
   result.weight_n = 0.81;
   EXPECT_NE(weigh_text(result, testing::device_preset("omni")).find("no torque"), std::string::npos);

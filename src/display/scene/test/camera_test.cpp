@@ -29,7 +29,7 @@ TEST(Camera, PresetsLookFromTheirSideWithTheHeadUp) {
   }
 }
 
-TEST(Camera, TheSideOfThePunctureFacesTheViewer) {
+TEST(Camera, PunctureSideFacesTheViewer) {
   EXPECT_EQ(preset_facing({-1, 0, 0}), CameraPreset::kRightAnteriorOblique);
   EXPECT_EQ(preset_facing({-0.3, -0.95, 0}), CameraPreset::kRightAnteriorOblique);
   EXPECT_EQ(preset_facing({0.6, -0.8, 0}), CameraPreset::kLeftAnteriorOblique);
@@ -61,7 +61,7 @@ TEST(Camera, OrbitKeepsFocusDistanceAndHeadUp) {
   }
 }
 
-TEST(Camera, DraggingToTheRightBringsThePatientsRightSideForward) {
+TEST(Camera, DraggingRightShowsThePatientsRightSide) {
   // As if one took the body by its front and pulled it to the right: what comes into sight is what was on the left of
   // the picture, the patient's right.
   const CameraView view = orbited(fit_camera(kCorners_P, CameraPreset::kAnterior, 1.0), 0.5, 0.0);
@@ -75,7 +75,7 @@ TEST(Camera, OrbitStopsShortOfThePoles) {
   EXPECT_GT((view.eye_P - view.focus_P).normalized().z(), -1.0);
 }
 
-TEST(Camera, PanMovesWhatIsAtTheFocusByTheShareOfTheHeight) {
+TEST(Camera, PanMovesTheFocusByAFractionOfTheHeight) {
   const CameraView view = fit_camera(kCorners_P, CameraPreset::kAnterior, 1.0);
   const CameraView moved = panned(view, 0.25, 0.0);
   const double height_mm = view.mm_per_pixel(view.focus_P, 1);
@@ -97,7 +97,7 @@ TEST(Camera, FollowingTheTipKeepsTheDirection) {
   EXPECT_NEAR(next.distance_mm(), view.distance_mm(), 1e-9);
 }
 
-TEST(Camera, SideViewIsSquareToTheNeedleInEveryDirection) {
+TEST(Camera, SideViewIsPerpendicularToAnyNeedle) {
   for (const Vec3& axis_P : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1), Vec3(0.5, 0.6, -0.3)}) {
     const Segment needle_P{-150.0 * axis_P.normalized(), {0, 0, 0}};
     const CameraView view = following({}, FollowMode::kSide, needle_P, true);

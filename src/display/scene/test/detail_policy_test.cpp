@@ -23,17 +23,17 @@ Time play(DetailPolicy& policy, Time now, int frames, const Cost& cost_ms) {
   return now;
 }
 
-TEST(DetailPolicy, WithAGraphicsCardEveryFrameIsWhole) {
+TEST(DetailPolicy, DrawsFullDetailWithAGraphicsCard) {
   DetailPolicy policy(true);
   const Time now = play(policy, kStart, 50, [](const Detail&) { return 200.0; });
   EXPECT_EQ(policy.next(now), DetailPolicy::full());
 }
 
-TEST(DetailPolicy, BeforeAnyMotionThePictureIsWhole) {
+TEST(DetailPolicy, StartsAtFullDetail) {
   EXPECT_EQ(DetailPolicy(false).next(kStart), DetailPolicy::full());
 }
 
-TEST(DetailPolicy, MotionIsDrawnCheaplyAndStillnessInFull) {
+TEST(DetailPolicy, ReducesDetailDuringMotion) {
   DetailPolicy policy(false);
   policy.note_motion(kStart);
   EXPECT_FALSE(policy.next(kStart).is_peeled);
@@ -41,7 +41,7 @@ TEST(DetailPolicy, MotionIsDrawnCheaplyAndStillnessInFull) {
   EXPECT_EQ(policy.next(kStart + milliseconds(300)), DetailPolicy::full());
 }
 
-TEST(DetailPolicy, SlowFramesLowerTheDetailUntilTheTargetIsKept) {
+TEST(DetailPolicy, LowersDetailUntilFramesMeetTheTarget) {
   DetailPolicy policy(false);
   const auto cost = [](const Detail& detail) { return detail.mesh_level < 2 ? 90.0 : 30.0; };
   const Time now = play(policy, kStart, 10, cost);
@@ -49,7 +49,7 @@ TEST(DetailPolicy, SlowFramesLowerTheDetailUntilTheTargetIsKept) {
   EXPECT_EQ(policy.next(now).resolution, 1.0);
 }
 
-TEST(DetailPolicy, OneSlowFrameIsForgiven) {
+TEST(DetailPolicy, IgnoresOneSlowFrame) {
   DetailPolicy policy(false);
   const int level = policy.moving_level();
   policy.note_motion(kStart);
@@ -67,7 +67,7 @@ TEST(DetailPolicy, NeverLeavesItsLevels) {
   EXPECT_EQ(policy.moving_level(), 0);
 }
 
-TEST(DetailPolicy, QuickFramesRaiseTheDetailAndDoNotFlutter) {
+TEST(DetailPolicy, RaisesDetailWithoutOscillating) {
   DetailPolicy policy(false);
   // The finest level is too slow for good: it is tried again at most every ten seconds.
   int fine_frames = 0;
@@ -81,7 +81,7 @@ TEST(DetailPolicy, QuickFramesRaiseTheDetailAndDoNotFlutter) {
   EXPECT_LE(fine_frames, 3);
 }
 
-TEST(DetailPolicy, FramesOfFullQualitySayNothingAboutMoving) {
+TEST(DetailPolicy, IgnoresFullDetailFramesForTheMovingLevel) {
   DetailPolicy policy(false);
   const int level = policy.moving_level();
   for (int i = 0; i < 10; ++i) policy.note_frame(DetailPolicy::full(), 900.0, kStart);

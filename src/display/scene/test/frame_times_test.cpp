@@ -14,7 +14,7 @@ TEST(FrameTimes, GivesLastMedianAndTail) {
   EXPECT_EQ(times.p99_ms(), 99.0);
 }
 
-TEST(FrameTimes, ForgetsWhatIsLongAgo) {
+TEST(FrameTimes, ForgetsOldFrames) {
   FrameTimes times;
   times.add(1e6);
   for (std::size_t i = 0; i < FrameTimes::kKept; ++i) times.add(5.0);

@@ -8,7 +8,7 @@
 namespace trocar::scene {
 namespace {
 
-TEST(InputWatch, SeesThePointerMoveWithoutReadingEvents) {
+TEST(InputWatch, DetectsPointerMotionWithoutReadingEvents) {
   if (!can_render()) GTEST_SKIP() << "no X server: run under scripts/with_display";
   move_pointer(100, 100);
   InputWatch watch;

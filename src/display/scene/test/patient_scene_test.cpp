@@ -59,7 +59,7 @@ bool is_magenta(const volume::Rgb& c) {
   return c[0] > 200 && c[2] > 200 && c[1] < 60;
 }
 
-TEST_F(PatientSceneTest, AnteriorViewHasPatientsRightOnTheLeftAndHeadUpAtEveryDetail) {
+TEST_F(PatientSceneTest, AnteriorViewIsOrientedRightAtEveryDetail) {
   for (const Detail& detail : {DetailPolicy::full(), DetailPolicy::moving(0), DetailPolicy::moving(2)}) {
     const volume::RgbImage image = draw(detail);
     EXPECT_LT(middle_of(image, is_reddish).x(), 60.0);
@@ -68,7 +68,7 @@ TEST_F(PatientSceneTest, AnteriorViewHasPatientsRightOnTheLeftAndHeadUpAtEveryDe
   }
 }
 
-TEST_F(PatientSceneTest, TheBodyIsInViewBeforeItsSurfacesAreMade) {
+TEST_F(PatientSceneTest, ShowsTheBodyBeforeItsSurfacesExist) {
   anatomy::VirtualPatient ball;
   ball.skin_distance_mm.geometry.size = {40, 40, 40};
   ball.skin_distance_mm.geometry.spacing_mm = {5.0, 5.0, 5.0};
@@ -100,7 +100,7 @@ TEST_F(PatientSceneTest, OpacityHidesAndShowsOneStructure) {
   EXPECT_GT(count_of(draw(), is_reddish), 50);
 }
 
-TEST_F(PatientSceneTest, SkinOnlyHidesTheOrgansAndAllBringsThemBack) {
+TEST_F(PatientSceneTest, SkinOnlyPresetHidesTheOrgans) {
   scene->apply_preset(StructurePreset::kSkinOnly);
   EXPECT_EQ(count_of(draw(), is_reddish), 0);
   EXPECT_GT(count_of(draw(), is_bright), 2000);
@@ -108,7 +108,7 @@ TEST_F(PatientSceneTest, SkinOnlyHidesTheOrgansAndAllBringsThemBack) {
   EXPECT_GT(count_of(draw(), is_reddish), 50);
 }
 
-TEST_F(PatientSceneTest, NeedleIsSeenWhereItIs) {
+TEST_F(PatientSceneTest, DrawsTheNeedleAtItsPose) {
   scene->apply_preset(StructurePreset::kBones);  // there are none
   const Vec3 shaft_P[3] = {{-60, 0, -50}, {0, 0, -48}, {60, 0, -40}};
   for (const NeedleModel model : {NeedleModel::kChiba, NeedleModel::kTuohy, NeedleModel::kQuincke,
@@ -121,7 +121,7 @@ TEST_F(PatientSceneTest, NeedleIsSeenWhereItIs) {
   EXPECT_EQ(count_of(draw(), is_bright), 0);
 }
 
-TEST_F(PatientSceneTest, AShotIsSeenUntilThereIsNone) {
+TEST_F(PatientSceneTest, DrawsAShotUntilItIsCleared) {
   scene->apply_preset(StructurePreset::kBones);
   const int before = count_of(draw(), is_orange);
   scene->set_shot(Segment{{-60, 0, -50}, {0, 0, -50}}, Segment{{10, 0, -50}, {60, 0, -50}});
@@ -132,7 +132,7 @@ TEST_F(PatientSceneTest, AShotIsSeenUntilThereIsNone) {
   EXPECT_EQ(count_of(draw(), is_orange), before);
 }
 
-TEST_F(PatientSceneTest, AThrowIsDashedAndThickerAtTheNotch) {
+TEST_F(PatientSceneTest, DrawsTheThrowDashedAndThickerAtTheNotch) {
   scene->apply_preset(StructurePreset::kBones);
   const volume::RgbImage before = draw();
   const auto changed = [&](const volume::RgbImage& image) {
@@ -150,14 +150,14 @@ TEST_F(PatientSceneTest, AThrowIsDashedAndThickerAtTheNotch) {
   EXPECT_EQ(changed(draw()), 0);
 }
 
-TEST_F(PatientSceneTest, ThinNeedleIsStillSeenFromAfar) {
+TEST_F(PatientSceneTest, ThinNeedleStaysVisibleFromAfar) {
   scene->apply_preset(StructurePreset::kBones);
   const Vec3 shaft_P[2] = {{-60, 0, -50}, {60, 0, -50}};
   scene->set_needle(shaft_P, 0.05, NeedleModel::kQuincke);
   EXPECT_GT(count_of(draw(), is_bright), 60);
 }
 
-TEST_F(PatientSceneTest, UltrasoundPictureHangsInItsPlaneAndIsClearOutsideOfTheFan) {
+TEST_F(PatientSceneTest, DrawsTheUltrasoundImageInItsPlaneWithinTheFan) {
   scene->apply_preset(StructurePreset::kBones);
   const volume::RgbImage picture(10, 10, {255, 0, 255});
   std::vector<std::uint8_t> alpha(100, 255);
@@ -181,7 +181,7 @@ TEST_F(PatientSceneTest, GuidanceIsShownAndHidden) {
   EXPECT_EQ(count_of(draw(), is_teal), 0);
 }
 
-TEST_F(PatientSceneTest, GuidanceWithoutThePathIsTargetAndEntryZone) {
+TEST_F(PatientSceneTest, TargetGuidanceShowsOnlyTargetAndEntryZone) {
   scene->apply_preset(StructurePreset::kBones);  // there are none: nothing hides the marks
   scene->set_path(Segment{{60, -95, -50}, {20, 0, -50}}, 15.0);
   const volume::RgbImage guided = draw();
@@ -196,7 +196,7 @@ TEST_F(PatientSceneTest, GuidanceWithoutThePathIsTargetAndEntryZone) {
   EXPECT_EQ(count_of(exam, is_orange) + count_of(exam, is_teal), 0);
 }
 
-TEST_F(PatientSceneTest, NoGuidanceWithholdsLesionsWhateverIsSet) {
+TEST_F(PatientSceneTest, HidesLesionsWithoutGuidance) {
   anatomy::VirtualPatient sick = *patient;
   sick.label_table.labels = {{1, "right", "kidney", kRed}, {2, "upper", "liver_lesion", kGreen}};
   scene->set_guidance(Guidance::kNone);
@@ -224,7 +224,7 @@ TEST_F(PatientSceneTest, NoGuidanceWithholdsLesionsWhateverIsSet) {
   EXPECT_TRUE(scene->pick(0.5, 0.33).has_value());
 }
 
-TEST_F(PatientSceneTest, EntryZoneLiesAboutItsOwnCentre) {
+TEST_F(PatientSceneTest, CentresTheEntryZone) {
   scene->apply_preset(StructurePreset::kBones);
   scene->set_path(Segment{{60, -95, -50}, {20, 0, -50}}, 15.0);
   scene->set_guidance(Guidance::kTarget);
@@ -235,7 +235,7 @@ TEST_F(PatientSceneTest, EntryZoneLiesAboutItsOwnCentre) {
   EXPECT_LT(about_centre.y(), about_path.y() - 40.0);  // 70 mm towards the head
 }
 
-TEST_F(PatientSceneTest, LandmarksAreShownWhenAsked) {
+TEST_F(PatientSceneTest, ShowsLandmarksOnRequest) {
   scene->apply_preset(StructurePreset::kBones);
   const volume::RgbImage without = draw();
   scene->set_landmarks_visible(true);
@@ -243,7 +243,7 @@ TEST_F(PatientSceneTest, LandmarksAreShownWhenAsked) {
   EXPECT_NE(with.pixels, without.pixels);
 }
 
-TEST_F(PatientSceneTest, LandmarksAreThoseThatWereSetLast) {
+TEST_F(PatientSceneTest, ShowsTheLandmarksSetLast) {
   scene->apply_preset(StructurePreset::kBones);
   scene->set_landmarks_visible(true);
   const volume::RgbImage own = draw();
@@ -255,7 +255,7 @@ TEST_F(PatientSceneTest, LandmarksAreThoseThatWereSetLast) {
   EXPECT_EQ(draw().pixels, own.pixels);
 }
 
-TEST_F(PatientSceneTest, PickFindsTheFrontOfWhatIsShown) {
+TEST_F(PatientSceneTest, PickFindsTheFrontmostSurface) {
   draw();
   const auto skin_P = scene->pick(0.5, 0.5);
   ASSERT_TRUE(skin_P);
@@ -263,7 +263,7 @@ TEST_F(PatientSceneTest, PickFindsTheFrontOfWhatIsShown) {
   EXPECT_FALSE(scene->pick(0.01, 0.01));
 }
 
-TEST_F(PatientSceneTest, ABreakGivesUpTheFrame) {
+TEST_F(PatientSceneTest, BreakAbortsTheFrame) {
   draw();
   scene->set_opacity("right", 0.5);
   EXPECT_FALSE(scene->render(DetailPolicy::full(), [] { return true; }));
@@ -272,7 +272,7 @@ TEST_F(PatientSceneTest, ABreakGivesUpTheFrame) {
   EXPECT_FALSE(scene->has_changed());
 }
 
-TEST_F(PatientSceneTest, MirroredPictureIsTheFlippedOne) {
+TEST_F(PatientSceneTest, MirroredImageIsTheFlippedImage) {
   const volume::RgbImage image = draw();
   StereoOptions options;
   options.is_mirrored_left_right = true;
@@ -285,7 +285,7 @@ TEST_F(PatientSceneTest, MirroredPictureIsTheFlippedOne) {
   for (int row = 0; row < kSize; ++row) EXPECT_EQ(image.at(100, row), turned.at(kSize - 1 - 100, kSize - 1 - row));
 }
 
-TEST_F(PatientSceneTest, ShutterGlassesGetAPictureForEachEyeWithTheNearThingsApart) {
+TEST_F(PatientSceneTest, RendersOneImagePerEyeWithParallax) {
   scene->apply_preset(StructurePreset::kBones);
   // Before the plane without parallax: what is near stands farther right for the left eye.
   const Vec3 shaft_P[2] = {{-30, -90, 0}, {30, -90, 0}};
@@ -305,7 +305,7 @@ TEST_F(PatientSceneTest, ShutterGlassesGetAPictureForEachEyeWithTheNearThingsApa
   EXPECT_GT(left, right + 2.0);
 }
 
-TEST_F(PatientSceneTest, SizeOfThePictureFollows) {
+TEST_F(PatientSceneTest, ImageFollowsTheSetSize) {
   draw();
   scene->set_size(kSize / 2, kSize / 4);
   ASSERT_TRUE(scene->render(DetailPolicy::full()));
@@ -330,7 +330,7 @@ TEST_F(PatientSceneTest, AnaglyphSplitsTheEyesIntoRedAndCyan) {
   EXPECT_EQ(count_of(mono, is_tinted), 0);
 }
 
-TEST_F(PatientSceneTest, SideBySideShowsTheOrganOnceForEachEye) {
+TEST_F(PatientSceneTest, SideBySideShowsTheOrganTwice) {
   StereoOptions options;
   options.mode = StereoMode::kSideBySide;
   scene->set_stereo(options);
@@ -345,7 +345,7 @@ TEST_F(PatientSceneTest, SideBySideShowsTheOrganOnceForEachEye) {
   EXPECT_NEAR(left, right, 0.3 * left);
 }
 
-TEST_F(PatientSceneTest, EvenRowsOfTheScreenAreTheLeftEyesHoweverThePictureStands) {
+TEST_F(PatientSceneTest, EvenScreenRowsShowTheLeftEyeAtAnyOffset) {
   scene->apply_preset(StructurePreset::kBones);
   // Before the plane without parallax: what is near stands farther right for the left eye.
   const Vec3 shaft_P[2] = {{0, -90, -60}, {0, -90, 60}};
@@ -377,7 +377,7 @@ TEST_F(PatientSceneTest, EvenRowsOfTheScreenAreTheLeftEyesHoweverThePictureStand
   EXPECT_LT(left_lead_px(0), -2.0);
 }
 
-TEST_F(PatientSceneTest, SoftwareRendererIsKnownAsSuch) {
+TEST_F(PatientSceneTest, DetectsASoftwareRenderer) {
   draw();
   ASSERT_FALSE(scene->renderer_name().empty());
   EXPECT_EQ(scene->has_gpu(), scene->renderer_name().find("llvmpipe") == std::string::npos);

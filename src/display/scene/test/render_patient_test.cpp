@@ -25,7 +25,7 @@ class RenderPatient : public ::testing::Test {
   }
 };
 
-TEST_F(RenderPatient, AnteriorViewHasPatientsRightOnTheLeftAndHeadUp) {
+TEST_F(RenderPatient, AnteriorViewShowsPatientsRightOnTheLeft) {
   const Scene scene = two_organs();
   const auto image = render_patient(scene.patient, scene.meshes, small(CameraPreset::kAnterior));
   ASSERT_TRUE(image) << image.error().text();
@@ -63,7 +63,7 @@ TEST_F(RenderPatient, OpaqueSkinHidesTheOrgans) {
   EXPECT_TRUE(std::isnan(middle_of(*image, is_reddish).x()));
 }
 
-TEST_F(RenderPatient, NeedleReachesFromItsHubOutsideToTheTarget) {
+TEST_F(RenderPatient, DrawsTheNeedleFromHubToTarget) {
   const Scene scene = two_organs();
   SceneOptions options = small(CameraPreset::kAnterior);
   options.paths = {{"path", {{-100, 0, 0}, {-70, 0, 0}}}};
@@ -87,7 +87,7 @@ TEST(RenderPatientArguments, ImpossibleSizeIsAUsageError) {
   EXPECT_EQ(image.error().exit_status, 2);
 }
 
-TEST(RenderPatientArguments, WithoutXServerTheErrorSaysWhatToDo) {
+TEST(RenderPatientArguments, ErrorWithoutXServerGivesAdvice) {
   const char* before = std::getenv("DISPLAY");
   const std::string saved = before == nullptr ? "" : before;
   unsetenv("DISPLAY");

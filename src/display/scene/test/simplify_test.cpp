@@ -7,7 +7,7 @@
 namespace trocar::scene {
 namespace {
 
-TEST(Simplify, LeavesFewerTrianglesOfTheSameShape) {
+TEST(Simplify, ReducesTrianglesAndKeepsTheShape) {
   const TriangleMesh fine = ball({10, -20, 30}, 50.0);
   // The ball's own triangles are 7 degrees wide: chords over four of them lose a fifth of the volume.
   constexpr double kChords = 0.22;
@@ -35,11 +35,11 @@ TEST(Decimate, KeepsTheShapeWithAQuarterOfTheTriangles) {
   EXPECT_EQ(normals.size(), coarse.vertices.size());
 }
 
-TEST(Simplify, NothingStaysNothing) {
+TEST(Simplify, KeepsAnEmptyMeshEmpty) {
   EXPECT_TRUE(detail::simplify({}, {}, 2.0).mesh.triangles.empty());
 }
 
-TEST(VertexNormals, OfABallPointOutward) {
+TEST(VertexNormals, PointOutwardOnABall) {
   const TriangleMesh mesh = ball({0, 0, 0}, 10.0);
   const std::vector<Vec3f> normals = detail::vertex_normals(mesh);
   for (std::size_t i = 0; i < normals.size(); ++i) {

@@ -25,20 +25,20 @@ anatomy::VirtualPatient liver_in_fat() {
   return patient;
 }
 
-TEST(Structure, ALesionIsTheTargetAndItsOrganIsAround) {
+TEST(Structure, FindsALesionAsTargetWithinItsOrgan) {
   EXPECT_EQ(find_aim(liver_in_fat(), {80, 80, 80}), (Aim{"tumour", "liver"}));
 }
 
-TEST(Structure, APlaceDeepInAnOrganHasTheOrganAround) {
+TEST(Structure, FindsTheOrganAroundADeepPoint) {
   EXPECT_EQ(find_aim(liver_in_fat(), {80, 80, 106}), (Aim{"", "liver"}));
 }
 
-TEST(Structure, FatIsNoTarget) {
+TEST(Structure, DoesNotTargetFat) {
   EXPECT_EQ(find_aim(liver_in_fat(), {80, 80, 5}), (Aim{"", ""}));
   EXPECT_EQ(find_aim(liver_in_fat(), {80, 80, 140}), (Aim{"", "liver"}));  // 10 mm beside the liver
 }
 
-TEST(Structure, TheTargetPresetShowsTheOrganAroundAPlaceThatHasNoStructure) {
+TEST(Structure, TargetPresetShowsTheOrganAroundABarePoint) {
   const StructureInfo liver{"liver", StructureKind::kOrgan, {}, 0.5, 0.5};
   const Aim aim = find_aim(liver_in_fat(), {80, 80, 106});
   const double opacity = preset_opacity(liver, StructurePreset::kTarget, aim.around_name);

@@ -25,7 +25,7 @@ anatomy::VirtualPatient marrow_beside_vessel() {
   return patient;
 }
 
-TEST(VolumeCopy, VesselsStayWhereBoneIsTakenOut) {
+TEST(VolumeCopy, KeepsVesselsWhenRemovingBone) {
   const anatomy::VirtualPatient patient = marrow_beside_vessel();
   const volume::CtGrid cloud = make_cloud(patient, CloudContent::kWithoutBone, kAll);
   EXPECT_LT((cloud[{5, 20, 20}]), 100);
@@ -35,19 +35,19 @@ TEST(VolumeCopy, VesselsStayWhereBoneIsTakenOut) {
   EXPECT_EQ(make_cloud(patient, CloudContent::kWhole, kAll).voxels, patient.ct.voxels);
 }
 
-TEST(VolumeCopy, BlurredEdgeOfBoneIsTakenOutWithIt) {
+TEST(VolumeCopy, RemovesTheBlurredEdgeOfBone) {
   anatomy::VirtualPatient patient = marrow_beside_vessel();
   for (std::uint8_t& label : patient.labels.voxels) label = label == kVessel ? 0 : label;
   EXPECT_LT((make_cloud(patient, CloudContent::kWithoutBone, kAll)[{11, 20, 20}]), 100);
 }
 
-TEST(VolumeCopy, WithoutLabelsNothingIsTakenOut) {
+TEST(VolumeCopy, RemovesNothingWithoutLabels) {
   anatomy::VirtualPatient patient = marrow_beside_vessel();
   patient.labels = {};
   EXPECT_EQ(make_cloud(patient, CloudContent::kWithoutBone, kAll).voxels, patient.ct.voxels);
 }
 
-TEST(VolumeCopy, TableIsAirAndGasInsideIsFatWhereOnlySkinIsWanted) {
+TEST(VolumeCopy, SkinOnlyReplacesTheTableByAirAndGasByFat) {
   anatomy::VirtualPatient patient;
   volume::GridGeometry g;
   g.size = {3, 1, 1};
@@ -60,7 +60,7 @@ TEST(VolumeCopy, TableIsAirAndGasInsideIsFatWhereOnlySkinIsWanted) {
   EXPECT_EQ(make_cloud(patient, CloudContent::kWhole, kAll).voxels, (std::vector<std::int16_t>{-1000, -950, -950}));
 }
 
-TEST(VolumeCopy, BlocksHaveEvenEdgesAndLieWhereTheirVoxelsLie) {
+TEST(VolumeCopy, BlocksAreNearlyCubicAndCentredOnTheirVoxels) {
   volume::GridGeometry g;
   g.size = {512, 512, 119};
   g.spacing_mm = {0.743, 0.743, 1.6};
@@ -78,7 +78,7 @@ TEST(VolumeCopy, BlocksHaveEvenEdgesAndLieWhereTheirVoxelsLie) {
   EXPECT_EQ((cloud[{1, 1, 1}]), 250);
 }
 
-TEST(VolumeCopy, AGridSmallerThanABlockStaysOneBlock) {
+TEST(VolumeCopy, SmallGridStaysOneBlock) {
   volume::GridGeometry g;
   g.size = {440, 1, 1};
   g.spacing_mm = {1.0, 0.1, 0.1};

@@ -30,7 +30,7 @@ class FuseUltrasound : public ::testing::Test {
   volume::SlicePlane plane_;
 };
 
-TEST_F(FuseUltrasound, IsDrawnAtItsPoseAndWhereItWasImaged) {
+TEST_F(FuseUltrasound, DrawsAtItsPoseWhereItWasImaged) {
   const volume::RgbImage picture = fused({FusionKind::kBlend, 0.5, 15.0});
   EXPECT_EQ(picture.at(9, 5), kCt) << "before its first voxel";
   EXPECT_NE(picture.at(10, 5), kCt);
@@ -41,7 +41,7 @@ TEST_F(FuseUltrasound, IsDrawnAtItsPoseAndWhereItWasImaged) {
   EXPECT_GT(orange[1], orange[2]);
 }
 
-TEST_F(FuseUltrasound, ShareZeroAndOffLeaveTheCt) {
+TEST_F(FuseUltrasound, ZeroShareAndOffShowOnlyTheCt) {
   EXPECT_EQ(fused({FusionKind::kBlend, 0.0, 15.0}).at(15, 5), kCt);
   EXPECT_EQ(fused({FusionKind::kOff, 1.0, 15.0}).at(15, 5), kCt);
 }

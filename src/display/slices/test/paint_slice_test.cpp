@@ -33,7 +33,7 @@ Vec3 middle_of(const anatomy::VirtualPatient& patient, std::string_view name) {
   return sum / count;
 }
 
-TEST(PaintSlice, ShowsTheLiverOnThePicturesLeft) {
+TEST(PaintSlice, ShowsTheLiverOnTheImageLeft) {
   const Vec3 liver_P = middle_of(coarse_abdomen(), "liver");
   const SliceGeometry view = view_of(body_box(coarse_abdomen()).center(), slice_axes(SliceOrientation::kAxial));
   SliceGeometry at_liver = view;
@@ -96,7 +96,7 @@ TEST(PaintSlice, OutlinesStructuresInFullColour) {
   EXPECT_GT(inside, 500);
 }
 
-TEST(PaintSlice, PaintsLesionsAsTheirOrganWhereTheyAreToBeFound) {
+TEST(PaintSlice, HidesLesionsInExamsByPaintingTheirOrgan) {
   const anatomy::Label& lesion = *coarse_abdomen().label_table.find("liver_lesion_1");
   const SliceGeometry view = view_of(middle_of(coarse_abdomen(), lesion.name), slice_axes(SliceOrientation::kAxial));
   const auto painted = [&](const SliceStyle& style) {
@@ -115,7 +115,7 @@ TEST(PaintSlice, PaintsLesionsAsTheirOrganWhereTheyAreToBeFound) {
   EXPECT_GT(lesions, 20);
 }
 
-TEST(PaintSlice, AllocatesNothingAfterTheFirstPicture) {
+TEST(PaintSlice, NeverAllocatesAfterTheFirstImage) {
   SliceGeometry view = view_of(middle_of(coarse_abdomen(), "liver"), slice_axes(SliceOrientation::kAxial));
   SliceBuffers buffers;
   volume::RgbImage picture;
@@ -129,7 +129,7 @@ TEST(PaintSlice, AllocatesNothingAfterTheFirstPicture) {
   EXPECT_EQ(guard.count(), 0U);
 }
 
-TEST(PaintSlice, StandsInAirFarFromThePatient) {
+TEST(PaintSlice, ShowsAirFarFromThePatient) {
   SliceBuffers buffers;
   volume::RgbImage picture;
   const SliceGeometry view = view_of({1e5, 0, 0}, slice_axes(SliceOrientation::kSagittal));

@@ -49,7 +49,7 @@ TEST(SliceGeometry, ZoomsAtAPoint) {
   }
 }
 
-TEST(NeedleAxes, OfANeedleFromTheFrontAreTheRadiologicalOnes) {
+TEST(NeedleAxes, AreRadiologicalForANeedleFromTheFront) {
   const Vec3 axis_P = Vec3::UnitY();
   const SliceAxes along = needle_axes(axis_P, NeedlePlane::kAlong);
   EXPECT_LT((along.u_P - slice_axes(SliceOrientation::kAxial).u_P).norm(), 1e-12);
@@ -61,7 +61,7 @@ TEST(NeedleAxes, OfANeedleFromTheFrontAreTheRadiologicalOnes) {
   EXPECT_EQ(direction_letters(-turned.u_P), "H");
 }
 
-TEST(NeedleAxes, HoldTheAxisAndAreSquare) {
+TEST(NeedleAxes, ContainTheAxisAndAreOrthogonal) {
   Random random(3);
   for (int n = 0; n < 500; ++n) {
     const Vec3 axis_P = n == 0 ? Vec3(Vec3::UnitZ()) : random_direction(random);
@@ -94,7 +94,7 @@ TEST(FittingScale, ShowsTheWholeBox) {
   EXPECT_NEAR(fitting_scale(box, slice_axes(SliceOrientation::kCoronal), 400, 400), 1.0, 1e-12);
 }
 
-TEST(BodyBox, LiesTightAroundTheBody) {
+TEST(BodyBox, EnclosesTheBodyTightly) {
   const anatomy::VirtualPatient& patient = coarse_abdomen();
   const Box box = body_box(patient);
   const Box whole = volume_box(patient.ct.geometry);

@@ -63,7 +63,7 @@ TEST(SliceLegend, NamesTheDirectionsOfEveryOrientation) {
   }
 }
 
-TEST(SliceLegend, ScaleBarIsAsLongAsItSays) {
+TEST(SliceLegend, ScaleBarHasItsStatedLength) {
   const SlicePicture picture = with_legend(SliceOrientation::kAxial);
   const int row = 600 - 4 * 3 - 2;
   int length = 0;
@@ -80,7 +80,7 @@ TEST(SliceLegend, ScaleBarHasARoundLength) {
   EXPECT_DOUBLE_EQ(scale_bar_mm(0.3), 0.2);
 }
 
-TEST(SliceLegend, SmallPicturesStayAsTheyAre) {
+TEST(SliceLegend, LeavesSmallImagesUnchanged) {
   const SlicePicture picture = with_legend(SliceOrientation::kAxial, 64);
   for (const volume::Rgb& pixel : picture.image.pixels) EXPECT_NE(pixel, (volume::Rgb{255, 255, 255}));
 }

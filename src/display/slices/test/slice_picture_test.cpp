@@ -36,7 +36,7 @@ std::array<int, 2> brightest(const volume::RgbImage& image) {
   return best;
 }
 
-TEST(SlicePicture, ShowsLeftOnTheRightFrontUpAndHeadUp) {
+TEST(SlicePicture, ShowsPatientsLeftOnTheRightFrontAndHeadUp) {
   const anatomy::VirtualPatient patient = marked_patient();
   const SliceOptions options{{0.0, 4000.0}, 0.0, false, 200, 0.0, Vec3::Zero()};
   // The mark is left of, behind and above the volume's middle at (0.5, 0.25, -1).
@@ -50,7 +50,7 @@ TEST(SlicePicture, ShowsLeftOnTheRightFrontUpAndHeadUp) {
   }
 }
 
-TEST(SlicePicture, PixelsAndPointsAgree) {
+TEST(SlicePicture, MapsPixelsToPointsAndBack) {
   const anatomy::VirtualPatient patient = marked_patient();
   for (const auto orientation : kOrientations) {
     SliceOptions options;
@@ -78,7 +78,7 @@ TEST(SlicePicture, HasSquarePixelsOverTheWholeVolume) {
   EXPECT_NEAR(coronal.plane.step_u_P.norm(), coronal.plane.step_v_P.norm(), 1e-12);
 }
 
-TEST(SlicePicture, ShowsAFieldInsideTheVolume) {
+TEST(SlicePicture, CropsToAFieldInsideTheVolume) {
   const anatomy::VirtualPatient patient = marked_patient();
   SliceOptions options;
   options.size_px = 100;
@@ -91,7 +91,7 @@ TEST(SlicePicture, ShowsAFieldInsideTheVolume) {
   EXPECT_NEAR(right_border_P.x(), 30.5, 1e-9);
 }
 
-TEST(SlicePicture, WindowsGreyValues) {
+TEST(SlicePicture, AppliesTheGreyWindow) {
   anatomy::VirtualPatient patient = marked_patient();
   SliceOptions options;
   options.window = {40.0, 400.0};
@@ -102,7 +102,7 @@ TEST(SlicePicture, WindowsGreyValues) {
   }
 }
 
-TEST(SlicePicture, FillsAndOutlinesStructuresButNotTheirGround) {
+TEST(SlicePicture, FillsAndOutlinesOnlyStructures) {
   anatomy::VirtualPatient patient = marked_patient();
   for (std::size_t n = 0; n < patient.labels.voxels.size(); ++n)
     patient.labels.voxels[n] = patient.labels.geometry.index_of(n)[1] < 30 ? 1 : 2;  // left half liver, right half fat

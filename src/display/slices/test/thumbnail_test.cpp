@@ -27,7 +27,7 @@ TEST(Thumbnail, ShowsTheEndOfThePatientsFirstPath) {
   EXPECT_EQ(region.path_P->a, patient.paths.front().line_P.a);
 }
 
-TEST(Thumbnail, WithoutAPathShowsTheLargestLesionOrTheMiddle) {
+TEST(Thumbnail, ShowsTheLargestLesionOrTheMiddleWithoutAPath) {
   anatomy::VirtualPatient patient = coarse_abdomen();
   patient.paths.clear();
   const ThumbnailRegion lesion = find_thumbnail_region(patient);
@@ -40,7 +40,7 @@ TEST(Thumbnail, WithoutAPathShowsTheLargestLesionOrTheMiddle) {
   EXPECT_LT((middle.centre_P - volume_box(patient.ct.geometry).center()).norm(), 1e-9);
 }
 
-TEST(Thumbnail, HasItsSizeThePathAndManyColours) {
+TEST(Thumbnail, DrawsThePathAtTheRequestedSize) {
   const anatomy::VirtualPatient& patient = coarse_abdomen();
   ThumbnailRegion region = find_thumbnail_region(patient);
   const volume::RgbImage image = make_slice_thumbnail(patient, region);

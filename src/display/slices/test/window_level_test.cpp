@@ -15,7 +15,7 @@ TEST(WindowLevel, MapsTheWindowOntoTheGrays) {
   EXPECT_EQ(gray, (std::vector<std::uint8_t>{0, 0, 1, 128, 191, 255, 255, 0}));
 }
 
-TEST(WindowLevel, FollowsTheFormulaForEveryHuOfEveryPreset) {
+TEST(WindowLevel, MatchesTheFormulaForEveryHuAndPreset) {
   std::vector<float> hu;
   for (int value = -1024; value <= 3071; ++value) hu.push_back(static_cast<float>(value));
   std::vector<std::uint8_t> gray(hu.size());
@@ -29,7 +29,7 @@ TEST(WindowLevel, FollowsTheFormulaForEveryHuOfEveryPreset) {
   }
 }
 
-TEST(WindowLevel, KnowsItsPresetsByName) {
+TEST(WindowLevel, FindsPresetsByName) {
   EXPECT_EQ(window_name({-600.0, 1500.0}), "Lung");
   EXPECT_EQ(window_name({-600.0, 1490.0}), "");
 }

@@ -51,7 +51,7 @@ class BadInput : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(BadInput, EveryFileIsReadOrRefusedInOneLine) {
+TEST_F(BadInput, IsReadOrRefusedInOneLine) {
   for (const auto& file : regular_files_below(data_)) {
     SCOPED_TRACE(file.string());
     expect_volume_or_one_line(read_ct(file), file.filename().string());
@@ -63,7 +63,7 @@ TEST_F(BadInput, EveryFileIsReadOrRefusedInOneLine) {
   }
 }
 
-TEST_F(BadInput, EveryDicomFileIsReadOrRefusedAsAFolder) {
+TEST_F(BadInput, IsReadOrRefusedAsADicomFolder) {
   for (const auto& file : regular_files_below(data_ / "dicom")) {
     SCOPED_TRACE(file.string());
     const auto alone = folder_ / file.stem().string();
@@ -74,7 +74,7 @@ TEST_F(BadInput, EveryDicomFileIsReadOrRefusedAsAFolder) {
   }
 }
 
-TEST_F(BadInput, EveryDicomFileDoubledIsRefusedOrAddsNothing) {
+TEST_F(BadInput, DuplicatedDicomFileIsRefusedOrIgnored) {
   // Two slices in one place or none: whatever the header says, its pixels are never trusted with a place. An enhanced
   // file is a volume by itself, and its copy is left out.
   for (const auto& file : regular_files_below(data_ / "dicom")) {
@@ -90,7 +90,7 @@ TEST_F(BadInput, EveryDicomFileDoubledIsRefusedOrAddsNothing) {
   }
 }
 
-TEST_F(BadInput, DeflatedDicomIsRefusedByNameNotLeftOut) {
+TEST_F(BadInput, RefusesDeflatedDicomExplicitly) {
   const auto deflated = data_ / "dicom" / "image_dfl.dcm";
   if (!std::filesystem::exists(deflated)) GTEST_SKIP() << "no test data at " << deflated;
   std::filesystem::copy_file(deflated, folder_ / "slice.dcm");
@@ -99,7 +99,7 @@ TEST_F(BadInput, DeflatedDicomIsRefusedByNameNotLeftOut) {
   EXPECT_NE(volume.error().text().find("deflated"), std::string::npos) << volume.error().text();
 }
 
-TEST_F(BadInput, EveryFileCutInHalfIsRefusedOrRead) {
+TEST_F(BadInput, IsReadOrRefusedWhenCutInHalf) {
   for (const auto& file : regular_files_below(data_)) {
     SCOPED_TRACE(file.string());
     const std::string whole = testing::read_bytes(file);

@@ -120,7 +120,7 @@ TEST_F(TorsoWithDerivedStructures, HasAFlavumOfThePublishedThickness) {
   EXPECT_LE(3.0 * sum / count, 5.0);
 }
 
-TEST_F(TorsoWithDerivedStructures, FindsTheSacFromTheVertebraeAsWell) {
+TEST_F(TorsoWithDerivedStructures, FindsTheSacFromTheVertebraeAlone) {
   const std::filesystem::path data = trocar::testing::test_data() / "ct-torso";
   const TemporaryFolder folder;
   ASSERT_TRUE(write_file_atomically(folder.path() / "vertebrae.toml",
@@ -149,7 +149,7 @@ TEST_F(TorsoWithDerivedStructures, FindsTheSacFromTheVertebraeAsWell) {
   EXPECT_GT(inside, 0.8 * all);
 }
 
-TEST_F(TorsoWithDerivedStructures, IsTheSamePatientAfterExport) {
+TEST_F(TorsoWithDerivedStructures, IsUnchangedByExport) {
   const TemporaryFolder folder;
   const Status exported = export_patient(patient_, ExportKind::kNifti, folder / "files");
   ASSERT_TRUE(exported) << exported.error().text();
@@ -170,7 +170,7 @@ TEST_F(TorsoWithDerivedStructures, IsTheSamePatientAfterExport) {
   }
 }
 
-TEST_F(TorsoWithDerivedStructures, OneOrganThatIsMovedBy15MmIsFound) {
+TEST_F(TorsoWithDerivedStructures, DetectsAnOrganMovedBy15Mm) {
   const volume::GridGeometry& g = patient_.labels.geometry;
   for (const char* name : {"liver", "spleen", "kidney_left", "vertebrae_L3"})
     for (const std::int64_t voxels : {-5, 5}) {

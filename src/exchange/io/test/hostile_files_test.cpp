@@ -82,7 +82,7 @@ TEST(HostileFiles, EveryReaderRefusesAHugeFileOfZeros) {
   }
 }
 
-TEST(HostileFiles, ADetachedHeaderMayNotLeaveItsFolder) {
+TEST(HostileFiles, RefuseADetachedHeaderThatLeavesItsFolder) {
   TemporaryFolder folder;
   fs::create_directories(folder / "in");
   write_bytes(folder / "outside.raw", std::string(64, '\0'));
@@ -117,7 +117,7 @@ TEST(HostileFiles, ADetachedHeaderMayNotLeaveItsFolder) {
   }
 }
 
-TEST(HostileFiles, HeadersThatReadersUnderstandDifferentlyAreRefused) {
+TEST(HostileFiles, RefuseAmbiguousHeaders) {
   TemporaryFolder folder;
   const std::string start = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n" + kNrrdPlace;
   write_bytes(folder / "a.nrrd", start + "content: y\n\n" + std::string(64, '\0'));
@@ -134,7 +134,7 @@ TEST(HostileFiles, HeadersThatReadersUnderstandDifferentlyAreRefused) {
   EXPECT_FALSE(read_labels(folder / "a.mha"));
 }
 
-TEST(HostileFiles, ADeclaredSizeIsComparedWithTheFileFirst) {
+TEST(HostileFiles, CheckADeclaredSizeBeforeAllocating) {
   // 2 GB are declared; nothing may be allocated for them.
   TemporaryFolder folder;
   const std::string sizes = "1000 1000 2000";
@@ -211,7 +211,7 @@ TEST_F(HostilePatient, LinksOutOfTheFolderAreRefused) {
   expect_refused("leads out of the folder", [&](const fs::path& file) { fs::create_symlink(folder_ / "kept", file); });
 }
 
-TEST_F(HostilePatient, HugeTextIsRefusedBeforeItIsRead) {
+TEST_F(HostilePatient, RefusesAHugeTextBeforeReadingIt) {
   for (const char* name : {"patient.toml", "landmarks.mrk.json", "paths.mrk.json"}) {
     fs::rename(path_ / name, folder_ / "kept");
     write_bytes(path_ / name, "");

@@ -57,7 +57,7 @@ class CommaLocale : public ::testing::TestWithParam<const char*> {
   TemporaryFolder folder_;
 };
 
-TEST_P(CommaLocale, ChangesNoByteOfAFile) {
+TEST_P(CommaLocale, DoesNotChangeWrittenFiles) {
   const auto plain = [&] {
     const testing::UserLocale c("C");
     return written_in(folder_ / "plain");
@@ -69,7 +69,7 @@ TEST_P(CommaLocale, ChangesNoByteOfAFile) {
   for (const auto& [name, bytes] : plain) EXPECT_TRUE(local.at(name) == bytes) << name << " depends on the locale";
 }
 
-TEST_P(CommaLocale, ChangesNoNumberThatIsRead) {
+TEST_P(CommaLocale, DoesNotChangeReadNumbers) {
   const testing::UserLocale user(GetParam());
   if (!user.is_there()) GTEST_SKIP() << GetParam() << " is not on this machine";
   written_in(folder_ / "files");
@@ -89,7 +89,7 @@ TEST_P(CommaLocale, ChangesNoNumberThatIsRead) {
   }
 }
 
-TEST_P(CommaLocale, ReadsSurfacesOfText) {
+TEST_P(CommaLocale, ReadsTextSurfaces) {
   testing::write_bytes(
       folder_ / "a.stl",
       "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0.5 0.25 0\nvertex 2.75 0.25 0\nvertex 0.5 4.5 0\n"

@@ -26,7 +26,7 @@ class Markups : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Markups, LandmarksComeBackAsTheyWere) {
+TEST_F(Markups, RoundTripLandmarks) {
   const std::vector<anatomy::Landmark> landmarks = {{"left \"rib\" 9", {1.0 / 3.0, -2.5e-7, 1234.5}}, {"", {0, 0, 0}}};
   ASSERT_TRUE(write_landmarks(landmarks, folder_ / "l.mrk.json"));
   const auto read = read_landmarks(folder_ / "l.mrk.json");
@@ -36,7 +36,7 @@ TEST_F(Markups, LandmarksComeBackAsTheyWere) {
   EXPECT_EQ((*read)[0].p_P, landmarks[0].p_P);
 }
 
-TEST_F(Markups, PathsComeBackAsTheyWere) {
+TEST_F(Markups, RoundTripPaths) {
   const std::vector<anatomy::NeedlePath> paths = {{"intercostal", {{1, 2, 3}, {4, 5, 6.125}}},
                                                   {"b", {{0, 0, 0}, {0, 0, 9}}}};
   ASSERT_TRUE(write_paths(paths, folder_ / "p.mrk.json"));
@@ -48,7 +48,7 @@ TEST_F(Markups, PathsComeBackAsTheyWere) {
   EXPECT_EQ((*read)[0].line_P.b, paths[0].line_P.b);
 }
 
-TEST_F(Markups, CurvesComeWithTheirPoints) {
+TEST_F(Markups, ReadCurvesWithTheirPoints) {
   const auto read = [&](const std::string& text) {
     write_bytes(folder_ / "c.mrk.json", text);
     return read_markup_points(folder_ / "c.mrk.json");
@@ -67,7 +67,7 @@ TEST_F(Markups, CurvesComeWithTheirPoints) {
   EXPECT_FALSE(read(R"({"markups": [{"type": "Plane"}]})"));
 }
 
-TEST_F(Markups, TurnsRasIntoLps) {
+TEST_F(Markups, ConvertRasToLps) {
   const std::string points = R"("controlPoints": [{"label": "a", "position": [1, 2, 3]}])";
   const auto ras = landmarks_of(markups(R"("type": "Fiducial", "coordinateSystem": "RAS", )" + points));
   const auto lps = landmarks_of(markups(R"("type": "Fiducial", "coordinateSystem": "LPS", )" + points));
@@ -78,7 +78,7 @@ TEST_F(Markups, TurnsRasIntoLps) {
   EXPECT_EQ((*unsaid)[0].p_P, Vec3(1, 2, 3));  // the schema's default is LPS
 }
 
-TEST_F(Markups, SkipsPointsThatWereNeverPlaced) {
+TEST_F(Markups, SkipUnplacedPoints) {
   const auto read = landmarks_of(markups(
       R"("type": "Fiducial", "controlPoints": [{"label": "a", "positionStatus": "undefined"},
          {"label": "b", "positionStatus": "defined", "position": [1, 2, 3]}])"));
@@ -87,7 +87,7 @@ TEST_F(Markups, SkipsPointsThatWereNeverPlaced) {
   EXPECT_EQ((*read)[0].name, "b");
 }
 
-TEST_F(Markups, RefusesWhatItCannotPlace) {
+TEST_F(Markups, RefuseUnknownCoordinateSystems) {
   for (const char* text :
        {R"("type": "Fiducial", "coordinateSystem": "HFS", "controlPoints": [])",
         R"("type": "Fiducial", "coordinateSystem": 0, "controlPoints": [])",
@@ -106,7 +106,7 @@ TEST_F(Markups, RefusesWhatItCannotPlace) {
     EXPECT_FALSE(landmarks_of(text)) << text;
 }
 
-TEST_F(Markups, ALineHasTwoEnds) {
+TEST_F(Markups, RequireTwoPointsInALine) {
   EXPECT_FALSE(paths_of(markups(R"("type": "Line", "controlPoints": [{"position": [1, 2, 3]}])")));
   EXPECT_FALSE(
       paths_of(markups(R"("type": "Line", "controlPoints": [{"position": [1, 2, 3]}, {"position": [1, 2, 3]}])")));
@@ -115,7 +115,7 @@ TEST_F(Markups, ALineHasTwoEnds) {
   EXPECT_TRUE(none->empty());
 }
 
-TEST_F(Markups, RefusesToWriteAPointThatIsNoNumber) {
+TEST_F(Markups, RefuseToWriteNonFinitePoints) {
   EXPECT_FALSE(write_landmarks({{"a", Vec3::Constant(std::nan(""))}}, folder_ / "l.mrk.json"));
   EXPECT_TRUE(folder_.is_empty());
 }

@@ -37,7 +37,7 @@ class Meshes : public ::testing::TestWithParam<const char*> {
   std::filesystem::path path_ = folder_ / (std::string("liver") + GetParam());
 };
 
-TEST_P(Meshes, KeepShapeAndSide) {
+TEST_P(Meshes, KeepShapeAndOrientation) {
   const TriangleMesh mesh = sphere(30.0);
   ASSERT_TRUE(write_mesh(mesh, path_));
   const auto read = read_mesh(path_);
@@ -47,7 +47,7 @@ TEST_P(Meshes, KeepShapeAndSide) {
   EXPECT_NEAR(area_mm2(*read) / area_mm2(mesh), 1.0, 1e-5);
 }
 
-TEST_P(Meshes, TruncatedAreRefusedInSilence) {
+TEST_P(Meshes, AreRefusedWithoutOutputWhenTruncated) {
   ASSERT_TRUE(write_mesh(sphere(30.0), path_));
   const std::string whole = read_bytes(path_);
   const auto cut = folder_ / (std::string("cut") + GetParam());
@@ -73,7 +73,7 @@ TEST(MeshFile, KeepsVertexOrderInVtp) {
   EXPECT_EQ(read->triangles, mesh.triangles);
 }
 
-TEST(MeshFile, SaysItsFrameIn3dSlicersWords) {
+TEST(MeshFile, StatesItsFrameIn3dSlicerTerms) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_mesh(sphere(30.0), folder / "liver.stl"));
   EXPECT_NE(read_bytes(folder / "liver.stl").substr(0, 80).find("SPACE=LPS"), std::string::npos);

@@ -55,7 +55,7 @@ TEST(Json, RefusesDeepNestingButNotBracketsInStrings) {
   EXPECT_TRUE(parse_json("\"\\\"" + std::string(1000, '[') + "\"", "string"));
 }
 
-TEST(Json, RefusesAFileOfTooManyValuesButNotCommasInStrings) {
+TEST(Json, LimitsValuesWithoutCountingCommasInStrings) {
   const TemporaryFolder folder;
   const auto loads = [&](std::size_t commas, const std::string& first) {
     std::string text = "[" + first;
@@ -88,7 +88,7 @@ TEST(Json, NeverThrowsOnDamagedText) {
   }
 }
 
-TEST(Json, TextOfInvalidUtf8IsReplacedNotThrown) {
+TEST(Json, ReplacesInvalidUtf8WithoutThrowing) {
   const Json json = {{"file", std::string("a\xff.nii")}};
   EXPECT_TRUE(parse_json(json_text(json), "own"));
 }

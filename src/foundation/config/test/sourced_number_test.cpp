@@ -18,7 +18,7 @@ TEST(SourcedNumber, CarriesValueSourceAndRange) {
   EXPECT_FALSE(read(R"({value = 1, source = "paper A, Table 1"})")->range);
 }
 
-TEST(SourcedNumber, RefusesWhatCannotBeTrusted) {
+TEST(SourcedNumber, RefusesIncompleteOrOutOfRangeNumbers) {
   for (const char* bad :
        {"3.0", R"({value = 11, source = "x"})", R"({value = nan, source = "x"})", R"({value = 1})",
         R"({value = 1, source = ""})", R"({value = 1, source = "assumed"})",

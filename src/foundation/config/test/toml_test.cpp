@@ -32,7 +32,7 @@ std::string error_of(const Result<T>& result) {
   return result ? std::string("no error") : result.error().text();
 }
 
-TEST(Toml, GettersGiveWhatTheFileSays) {
+TEST(Toml, GettersReturnTheFilesValues) {
   const TomlTable liver = *example().table("tissues")->table("liver");
   EXPECT_EQ(example().string("title"), "Ünïcode");
   EXPECT_EQ(liver.table("viscosity")->number("value", {0, 1}), 0.02);
@@ -92,7 +92,7 @@ TEST(Toml, ErrorsNameFileLineKeyAndRange) {
             "must be a number from 1 to 20, it is 22.5 — tissues.toml, line 12: needles[1].gauge — correct the value");
 }
 
-TEST(Toml, RowsAreListsOfNumbersOfOneLength) {
+TEST(Toml, RowsRequireEqualLength) {
   const TomlTable table =
       *parse_toml("a = [[1, 2.5], [-3, 4]]\nb = []\nc = [[1, 2], [3]]\nd = [1, 2]\ne = [[1, nan]]\n", "f");
   const Range range{-3, 4};
@@ -127,7 +127,7 @@ TEST(Toml, NonFiniteNumbersAreRefused) {
   EXPECT_FALSE(table.numbers("d", everything));
 }
 
-TEST(Toml, HostileBytesAreRefusedBeforeTheParserSeesThem) {
+TEST(Toml, RefusesHostileBytesBeforeParsing) {
   for (const std::string_view bad :
        {std::string_view("[ \0B\0=", 6), std::string_view("a = \"\x01\""), std::string_view("a = 1\x7f"),
         std::string_view("a = \"\xff\""), std::string_view("a = \"\xc0\xaf\""),
@@ -141,7 +141,7 @@ TEST(Toml, HostileBytesAreRefusedBeforeTheParserSeesThem) {
 }
 
 // Found by fuzzing toml++ 3.3 under sanitizers: assertions, and code that it marks unreachable but reaches.
-TEST(Toml, TextThatToml33CannotTakeIsRefused) {
+TEST(Toml, RefusesTextThatCrashesToml33) {
   for (const char* bad : {"[ =", "ä = 1", "a = ä", "a =\xc2\xa0 1", "a = \"\"\"x \\\n ä\"\"\"", "a = \"\"\"\\ä\"\"\"",
                           "a = \"\\q\"", "a = 1\"ä\"", "a = 1.\"ä\"", "a = [\n1.\"ä\"]"})
     EXPECT_FALSE(parse_toml(bad, "bad")) << bad;

@@ -19,7 +19,7 @@ TomlTable parsed(const std::string& text) {
   return table ? *table : TomlTable();
 }
 
-TEST(TomlWriter, WritesKeysAndTablesInTheOrderOfTheCalls) {
+TEST(TomlWriter, WritesKeysAndTablesInCallOrder) {
   TomlWriter writer;
   writer.comment("A test.");
   writer.set("second", 2);
@@ -46,7 +46,7 @@ TEST(TomlWriter, StartsADocumentOfTablesWithoutABlankLine) {
   EXPECT_EQ(writer.text(), "[path]\n");
 }
 
-TEST(TomlWriter, ReturnsNumbersToTheBit) {
+TEST(TomlWriter, RoundTripsNumbersBitwise) {
   Random random(8);
   constexpr double kHuge = std::numeric_limits<double>::max();
   std::vector<double> numbers{0.0, -0.0, 1.0, 1e15, 1e16, 1e22, 1e-7, kHuge, -0.25, std::numeric_limits<double>::min()};
@@ -62,7 +62,7 @@ TEST(TomlWriter, ReturnsNumbersToTheBit) {
   }
 }
 
-TEST(TomlWriter, WritesWholeNumbersAndTruthValues) {
+TEST(TomlWriter, WritesIntegersAndBooleans) {
   TomlWriter writer;
   writer.set("least", std::int64_t{-9'000'000'000'000'000});
   writer.set("byte", std::uint8_t{255});
@@ -70,7 +70,7 @@ TEST(TomlWriter, WritesWholeNumbersAndTruthValues) {
   EXPECT_EQ(writer.text(), "least = -9000000000000000\nbyte = 255\nno = false\n");
 }
 
-TEST(TomlWriter, ReturnsEveryText) {
+TEST(TomlWriter, RoundTripsEveryText) {
   std::string controls = "from ";
   for (char c = 1; c < 0x20; ++c) controls += c;
   controls += '\0';
@@ -94,7 +94,7 @@ TEST(TomlWriter, ReturnsEveryText) {
   }
 }
 
-TEST(TomlWriter, ReturnsEveryKey) {
+TEST(TomlWriter, RoundTripsEveryKey) {
   for (const char* name : {"liver", "rib 9", "a.b", "\u00e4", "it's", "\"q\"", "1", "", "a\tb"}) {
     TomlWriter writer;
     writer.set(name, Entries{{name, 1.0}});

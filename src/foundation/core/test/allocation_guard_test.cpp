@@ -46,7 +46,7 @@ TEST(AllocationGuard, CountsAllocationsThatMayFail) {
   EXPECT_EQ(guard.count(), 2u);
 }
 
-TEST(AllocationGuard, SeesArraysAndAlignedMemory) {
+TEST(AllocationGuard, CountsArraysAndAlignedMemory) {
   struct alignas(128) Line {
     char bytes[128];
   };
@@ -60,14 +60,14 @@ TEST(AllocationGuard, SeesArraysAndAlignedMemory) {
   EXPECT_EQ(guard.count(), 3u);
 }
 
-TEST(AllocationGuard, CountsFromItsOwnBeginning) {
+TEST(AllocationGuard, CountsFromItsConstruction) {
   auto before = std::make_unique<int>(1);
   escaped = before.get();
   const AllocationGuard guard;
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST(AllocationGuard, LooksAtItsOwnThreadOnly) {
+TEST(AllocationGuard, CountsOnlyItsOwnThread) {
   std::size_t seen_inside = 0;
   const auto allocate = [&] {
     const AllocationGuard inner;

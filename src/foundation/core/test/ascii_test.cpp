@@ -14,7 +14,7 @@ bool is_in(std::string_view set, char c) {
   return set.find(c) != std::string_view::npos;
 }
 
-TEST(Ascii, KnowsEveryByte) {
+TEST(Ascii, ClassifiesEveryByte) {
   for (int byte = 0; byte < 256; ++byte) {
     const char c = static_cast<char>(byte);
     EXPECT_EQ(is_lower(c), is_in(kLower, c)) << byte;

@@ -9,7 +9,7 @@ namespace trocar {
 inline namespace core {
 namespace {
 
-TEST(AvailableMemory, FreedMemoryGoesBackToTheSystem) {
+TEST(AvailableMemory, ReturnsFreedMemoryToTheSystem) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the sanitizers' allocator keeps freed memory";
 #endif

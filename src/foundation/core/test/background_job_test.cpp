@@ -33,7 +33,7 @@ TEST(BackgroundJob, GivesTheErrorOfItsWork) {
   EXPECT_EQ(result->error().what, "no room");
 }
 
-TEST(BackgroundJob, ShowsHowFarItIsWhileItWorks) {
+TEST(BackgroundJob, ReportsProgressWhileRunning) {
   std::promise<void> go_on, half_way;
   BackgroundJob<int> job([&](const Progress& progress) -> Result<int> {
     report(progress, "first half", 0.5);
@@ -52,7 +52,7 @@ TEST(BackgroundJob, ShowsHowFarItIsWhileItWorks) {
   EXPECT_EQ(job.view().fraction, 1.0);
 }
 
-TEST(BackgroundJob, CancelTellsTheWorkAndDropsItsResult) {
+TEST(BackgroundJob, CancelStopsTheWorkAndDropsItsResult) {
   BackgroundJob<int> job([](const Progress&, const std::stop_token& stop) -> Result<int> {
     while (!stop.stop_requested()) std::this_thread::yield();
     return 1;
@@ -63,14 +63,14 @@ TEST(BackgroundJob, CancelTellsTheWorkAndDropsItsResult) {
   EXPECT_FALSE(job.take());
 }
 
-TEST(BackgroundJob, CancelDropsAResultThatIsAlreadyThere) {
+TEST(BackgroundJob, CancelDropsAFinishedResult) {
   BackgroundJob<int> job([](const Progress&) -> Result<int> { return 1; });
   wait_done(job);
   job.cancel();
   EXPECT_FALSE(job.take());
 }
 
-TEST(BackgroundJob, SaysWhenMemoryIsShort) {
+TEST(BackgroundJob, ReportsOutOfMemory) {
   BackgroundJob<int> job([](const Progress&) -> Result<int> { throw std::bad_alloc(); });
   wait_done(job);
   const auto result = job.take();
@@ -93,7 +93,7 @@ TEST(BackgroundJob, CanBeMovedWhileItWorks) {
   EXPECT_EQ(***result, 3);
 }
 
-TEST(BackgroundJob, WithoutWorkHasNothingToGive) {
+TEST(BackgroundJob, HasNoResultWithoutWork) {
   BackgroundJob<int> job;
   EXPECT_FALSE(job.has_work());
   EXPECT_FALSE(job.take());
@@ -113,7 +113,7 @@ TEST(RetiredJobs, KeepAJobUntilItsWorkHasEnded) {
   while (retired.sweep() > 0) std::this_thread::yield();
 }
 
-TEST(BackgroundJob, GivesWhatItsWorkThrowsAsAnError) {
+TEST(BackgroundJob, ConvertsExceptionsToErrors) {
   const auto what_of = [](auto thrown) {
     BackgroundJob<int> job([thrown](const Progress&) -> Result<int> { throw thrown; });
     wait_done(job);

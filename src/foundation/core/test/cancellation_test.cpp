@@ -34,7 +34,7 @@ TEST(Cancellation, EndsParallelWorkBetweenParts) {
   EXPECT_LT(parts_until_cancelled(source, 10), 100000U);
 }
 
-TEST(Cancellation, IsHandedToNestedWorkAndToOtherThreads) {
+TEST(Cancellation, ReachesNestedWorkAndOtherThreads) {
   std::stop_source source;
   source.request_stop();
   std::atomic<int> ended = 0;
@@ -56,7 +56,7 @@ TEST(Cancellation, IsHandedToNestedWorkAndToOtherThreads) {
 }
 
 // TBB cancels what is nested in work of which a part has thrown: its parts would be skipped without a word.
-TEST(Cancellation, LeavesNoNestedWorkUndoneThatReturns) {
+TEST(Cancellation, CompletesNestedCompleteWorkDespiteCancellation) {
   std::stop_source source;
   std::atomic<bool> is_beside_running = false, has_thrown = false;
   std::atomic<int> parts = 0, calls = 0;
@@ -82,7 +82,7 @@ TEST(Cancellation, LeavesNoNestedWorkUndoneThatReturns) {
   EXPECT_EQ(calls, 5);
 }
 
-TEST(Cancellation, ConcernsNobodyOutsideOfItsScope) {
+TEST(Cancellation, HasNoEffectOutsideItsScope) {
   std::stop_source source;
   source.request_stop();
   {
@@ -106,7 +106,7 @@ struct Counted {
   std::atomic<int>& alive;
 };
 
-TEST(Cancellation, UnwindsAJobThatReportsProgressAndDropsItsResult) {
+TEST(Cancellation, UnwindsAJobAtProgressReportsAndDropsItsResult) {
   std::atomic<int> alive = 0;
   std::atomic<bool> has_begun = false;
   BackgroundJob<int> job([&](const Progress& progress) -> Result<int> {

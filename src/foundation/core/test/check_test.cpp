@@ -17,7 +17,7 @@ struct CheckHandlers : ::testing::Test {
   void TearDown() override { set_check_handler(nullptr); }
 };
 
-TEST_F(CheckHandlers, AreAbsentAtTheStart) {
+TEST_F(CheckHandlers, AreUnsetByDefault) {
   EXPECT_EQ(set_check_handler(nullptr), nullptr);
   EXPECT_DEATH(half_of(3), "internal error: check failed: even % 2 == 0");
 }
@@ -36,7 +36,7 @@ TEST_F(CheckHandlers, HandTheirExceptionToTheCaller) {
   EXPECT_EQ(set_check_handler(nullptr), thrower);
 }
 
-TEST_F(CheckHandlers, ThatReturnAreFollowedByTheEnd) {
+TEST_F(CheckHandlers, ThatReturnAreFollowedByAnAbort) {
   set_check_handler([](const char*) {});
   EXPECT_DEATH(half_of(3), "");
 }

@@ -18,7 +18,7 @@ TEST(FakeClock, StandsStillUntilItIsAdvanced) {
   EXPECT_DOUBLE_EQ(seconds_between(begin, clock.now()), 0.25);
 }
 
-TEST(FakeClock, CallsItsParticipantsInEveryStepUntilTheyLeave) {
+TEST(FakeClock, CallsParticipantsEveryStepUntilTheyLeave) {
   testing::FakeClock clock;
   std::vector<Clock::Duration> at;
   const Clock::TimePoint begin = clock.now();

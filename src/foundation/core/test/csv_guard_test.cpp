@@ -18,14 +18,14 @@ TEST(CsvGuard, MarksFormulas) {
 }
 
 /// A spreadsheet of another country separates by semicolons, and does not see a quotation that begins inside a cell.
-TEST(CsvGuard, MarksFormulasInsideOfATextToo) {
+TEST(CsvGuard, MarksFormulasInsideAText) {
   EXPECT_EQ(guard_formulas("a;=1+1"), "a;'=1+1");
   EXPECT_EQ(guard_formulas("a,@x"), "a,'@x");
   EXPECT_EQ(guard_formulas("a; \"=1;b"), "a;' \"=1;b");
   EXPECT_EQ(guard_formulas("a\n-1"), "a\n'-1");
 }
 
-TEST(CsvGuard, IsUndone) {
+TEST(CsvGuard, RoundTrips) {
   constexpr std::string_view kPieces[] = {"=", "+",  "-", "@", "\t", "\r", "\n",
                                           "'", "\"", ";", ",", " ",  "a",  "\xef\xbc\x9d"};
   Random random(7);
@@ -36,7 +36,7 @@ TEST(CsvGuard, IsUndone) {
   }
 }
 
-TEST(CsvGuard, LeavesOtherApostrophes) {
+TEST(CsvGuard, KeepsOtherApostrophes) {
   for (const char* text : {"'", "'a", "don't", "a;'b", "' "}) EXPECT_EQ(without_formula_guards(text), text);
 }
 

@@ -28,7 +28,7 @@ std::string locale_of_c(int category) {
   return std::setlocale(category, nullptr);
 }
 
-TEST(DecimalPoint, NumbersHaveAPointMeanwhile) {
+TEST(DecimalPoint, ForcesADecimalPointInItsScope) {
   const testing::UserLocale user("de_DE.UTF-8");
   if (!user.is_there()) GTEST_SKIP() << "de_DE.UTF-8 is not on this machine";
   EXPECT_EQ(printed(3.75), "3,75");

@@ -14,23 +14,23 @@ std::string hash_of(std::initializer_list<std::string_view> parts) {
   return hash.digest();
 }
 
-TEST(ContentHash, OfNothingIsThePublishedOne) {
+TEST(ContentHash, OfEmptyInputMatchesXxh3) {
   EXPECT_EQ(hash_of({}), "99aa06d3014798d86001c324468d497f");  // XXH3 128 bits of empty input
 }
 
-TEST(ContentHash, DoesNotDependOnHowTheBytesArrive) {
+TEST(ContentHash, IsIndependentOfChunking) {
   const std::string text(100'000, 'x');
   const std::string_view view = text;
   EXPECT_EQ(hash_of({view}), hash_of({view.substr(0, 1), "", view.substr(1, 5000), view.substr(5001)}));
 }
 
-TEST(ContentHash, TellsContentsApart) {
+TEST(ContentHash, DistinguishesContents) {
   EXPECT_NE(hash_of({"liver"}), hash_of({"Liver"}));
   EXPECT_NE(hash_of({"liver"}), hash_of({"liver "}));
   EXPECT_NE(hash_of({"ab"}), hash_of({"ba"}));
 }
 
-TEST(ContentHash, DigestCanBeAskedForOnTheWay) {
+TEST(ContentHash, DigestCanBeReadAtAnyTime) {
   ContentHash hash;
   const std::string before = hash.digest();
   EXPECT_EQ(hash.digest(), before);

@@ -65,7 +65,7 @@ TEST(Interruption, LeavesNoHalfWrittenFileOrFolder) {
   }
 }
 
-TEST(Interruption, LeavesNothingOfWorkThatMakesItsFoldersAgainAndAgain) {
+TEST(Interruption, RemovesFoldersThatWorkKeepsRecreating) {
   for (int round = 0; round < 20; ++round) {
     const TemporaryFolder folder;
     EXPECT_EQ(interrupted([&] {
@@ -84,7 +84,7 @@ TEST(Interruption, LeavesNothingOfWorkThatMakesItsFoldersAgainAndAgain) {
 }
 
 /// An interruption comes before an output is in place, and nothing is there, or after it, and all is there.
-TEST(Interruption, LeavesAnOutputWholeOrNotAtAll) {
+TEST(Interruption, LeavesACompleteOutputOrNone) {
   constexpr int kLongest_us = 20'000'000;  // a busy machine is slow
   int whole = 0;
   for (int delay_us = 0; delay_us < 4000 || (whole == 0 && delay_us < kLongest_us);
@@ -109,7 +109,7 @@ TEST(Interruption, LeavesAnOutputWholeOrNotAtAll) {
   EXPECT_GT(whole, 0);
 }
 
-TEST(Interruption, SaysThatAnOutputIsComplete) {
+TEST(Interruption, ReportsACompleteOutput) {
   const TemporaryFolder folder;
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(interrupted([&] {
@@ -138,7 +138,7 @@ TEST(Interruption, RemovesTemporaryFolders) {
   EXPECT_TRUE(folder.is_empty());
 }
 
-TEST(Interruption, LetsWorkEndByItself) {
+TEST(Interruption, AllowsWorkToFinish) {
   EXPECT_EQ(interrupted([] {
               const InterruptibleWork work;
               EXPECT_FALSE(is_interrupted());

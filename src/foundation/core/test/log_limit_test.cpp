@@ -13,12 +13,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(LogLine, LeavesAPlainTextAsItIs) {
+TEST(LogLine, KeepsPlainText) {
   EXPECT_EQ(log_line("Größe 3 µm — \"a\"", 200), "Größe 3 µm — \"a\"");
   EXPECT_EQ(log_line("", 200), "");
 }
 
-TEST(LogLine, EscapesWhatCouldLookLikeAnotherLine) {
+TEST(LogLine, EscapesControlAndInvalidCharacters) {
   EXPECT_EQ(log_line("a\nb\r\x1b[2J", 200), "a\\x0ab\\x0d\\x1b[2J");
   EXPECT_EQ(log_line(std::string_view("a\0b", 3), 200), "a\\x00b");
   EXPECT_EQ(log_line("\xff\xc3(", 200), "\\xff\\xc3(");
@@ -39,7 +39,7 @@ TEST(LogLine, CutsALongTextAndStatesItsLength) {
   }
 }
 
-TEST(LogLimit, PassesTenLinesAndThenOneEverySixSeconds) {
+TEST(LogLimit, PassesTenLinesThenOneEverySixSeconds) {
   testing::FakeClock clock;
   LogLimit limit(clock);
   const auto passed = [&](int lines) {

@@ -27,7 +27,7 @@ TEST(ParallelFor, VisitsEveryIndexOnce) {
     }
 }
 
-TEST(ParallelFor, DoesNothingForNothing) {
+TEST(ParallelFor, DoesNothingForAnEmptyRange) {
   parallel_for(0, 1, [](std::size_t, std::size_t) { FAIL(); });
 }
 
@@ -40,7 +40,7 @@ TEST(ParallelFor, CanBeNested) {
   EXPECT_EQ(sum.load(), 100);
 }
 
-TEST(RunOnThreads, KeepsToTheCallersThreadWhereOneIsAllowed) {
+TEST(RunOnThreads, UsesOnlyTheCallersThreadForACountOfOne) {
   std::mutex mutex;
   std::set<std::thread::id> used;
   std::atomic<int> visits = 0;
@@ -64,7 +64,7 @@ TEST(ParallelInvoke, RunsAllAndWaits) {
 }
 
 /// In a program of its own, whose first work it is.
-TEST(ParallelForDeathTest, WithoutMoreThreadsTheCallersDoesAll) {
+TEST(ParallelForDeathTest, CallerDoesAllWorkWithoutOtherThreads) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto work = [] {
     const testing::NoThreads none;

@@ -30,14 +30,14 @@ TEST(ParseNumber, RefusesSignsSpacesAndOtherCharacters) {
   EXPECT_FALSE(parse_number<int>(std::string_view()));
 }
 
-TEST(ParseNumber, RefusesNumbersThatAreNotFiniteOrDoNotFit) {
+TEST(ParseNumber, RefusesNonFiniteAndOutOfRangeNumbers) {
   for (const char* text : {"nan", "-nan", "nan(1)", "inf", "-inf", "infinity", "1e400", "-1e400", "1e-400"})
     EXPECT_FALSE(parse_number<double>(text)) << text;
   EXPECT_FALSE(parse_number<int>("2147483648"));
   EXPECT_FALSE(parse_number<std::uint8_t>("256"));
 }
 
-TEST(ParseNumber, ReturnsWrittenNumbersToTheBit) {
+TEST(ParseNumber, RoundTripsNumbersBitwise) {
   Random random(5);
   for (int n = 0; n < 1000; ++n) {
     const double number = random.normal() * std::pow(10.0, random.uniform(-300.0, 300.0));
@@ -56,7 +56,7 @@ TEST(LeadingNumber, LeavesTheRestOfTheText) {
   EXPECT_EQ(find_leading_number<int>("12")->rest, "");
 }
 
-TEST(LeadingNumber, IsEmptyIfTheTextStartsWithSomethingElse) {
+TEST(LeadingNumber, IsEmptyIfTheTextStartsWithoutANumber) {
   for (const char* text : {"", "_1", " 1", "+1", "nan1", "inf,1", "1e400,1"})
     EXPECT_FALSE(find_leading_number<double>(text)) << text;
 }

@@ -8,7 +8,7 @@ namespace trocar {
 inline namespace core {
 namespace {
 
-TEST(Error, TextSaysWhatWhereAndWhatToDo) {
+TEST(Error, TextStatesCausePlaceAndAdvice) {
   EXPECT_EQ(fail("is empty", "ct.nrrd", "export it again").value().text(), "is empty — ct.nrrd — export it again");
 }
 
@@ -18,12 +18,12 @@ TEST(Error, TextLeavesOutEmptyParts) {
   EXPECT_EQ(fail("is empty", "ct.nrrd").value().text(), "is empty — ct.nrrd");
 }
 
-TEST(Error, TextIsOneLineWhateverAFileIsCalled) {
+TEST(Error, TextIsOneLineForAnyFileName) {
   const std::string text = fail("bad", "a\nb\r\x1b[31m\x7f.nii").value().text();
   EXPECT_EQ(text, "bad — a b  [31m .nii");
 }
 
-TEST(Error, ExitStatusTellsWorkFromArguments) {
+TEST(Error, ExitStatusDistinguishesFailureFromUsage) {
   EXPECT_EQ(fail("x").value().exit_status, 1);
   EXPECT_EQ(fail_usage("x").value().exit_status, 2);
 }
@@ -51,7 +51,7 @@ Result<std::unique_ptr<int>> make(bool works) {
   return std::make_unique<int>(5);
 }
 
-TEST(Try, MovesWhatCannotBeCopied) {
+TEST(Try, MovesNonCopyableValues) {
   const auto use = [](bool works) -> Result<int> {
     TROCAR_TRY(const std::unique_ptr<int> value, make(works));
     return *value;
@@ -60,7 +60,7 @@ TEST(Try, MovesWhatCannotBeCopied) {
   EXPECT_FALSE(use(false));
 }
 
-TEST(Try, PassesAStatusOn) {
+TEST(Try, PropagatesAStatus) {
   const auto check = [](int n) -> Status {
     if (n < 0) return fail("is negative");
     return {};

@@ -54,7 +54,7 @@ TEST(TestParts, EverySuiteIsInOneOfThem) {
     EXPECT_EQ(counts[std::string(all.GetTestSuite(i)->name()) + "."], 1) << all.GetTestSuite(i)->name();
 }
 
-TEST(TestParts, AFilterStillChooses) {
+TEST(TestParts, ApplyTheFilterWithinAPart) {
   std::map<std::string, int> counts;
   for (const char* part : {"1/2", "2/2"}) {
     count_suites(list_part(part, "--gtest_filter='TestParts.*'").text, counts);
@@ -64,7 +64,7 @@ TEST(TestParts, AFilterStillChooses) {
   EXPECT_EQ(counts.size(), 1u);
 }
 
-TEST(TestParts, WhatIsNoPartIsRefused) {
+TEST(TestParts, RefuseAMalformedPart) {
   for (const char* part : {"0/2", "3/2", "1", "1/2x", "''", "a/b"}) EXPECT_NE(list_part(part).status, 0) << part;
 }
 
@@ -74,7 +74,7 @@ TEST(TestFilter, OneThatSelectsNothingIsRefused) {
   for (const std::string& environment : {std::string(), shard, part}) {
     EXPECT_NE(run_self(environment, "--gtest_filter='NoSuch.*'").status, 0) << environment;
     EXPECT_NE(run_self(environment, "--gtest_filter='TestParts.*-TestParts.*'").status, 0) << environment;
-    EXPECT_EQ(run_self(environment, "--gtest_filter='NoSuch.*:Test?arts.WhatIs*'").status, 0) << environment;
+    EXPECT_EQ(run_self(environment, "--gtest_filter='NoSuch.*:Test?arts.RefuseA*'").status, 0) << environment;
   }
 }
 

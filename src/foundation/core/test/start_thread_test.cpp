@@ -29,7 +29,7 @@ TEST(StartThread, RunsItsBody) {
   EXPECT_TRUE(check_threads_can_start("test", 3));
 }
 
-TEST(StartThread, IsAnErrorIfTheSystemHasNone) {
+TEST(StartThread, FailsIfTheSystemHasNoThread) {
   const testing::NoThreads none;
   const auto thread = start_thread("test", [] {});
   ASSERT_FALSE(thread);
@@ -40,7 +40,7 @@ TEST(StartThread, IsAnErrorIfTheSystemHasNone) {
   EXPECT_FALSE(handle_interruptions("trocar test"));
 }
 
-TEST(StartThread, WithoutOneTheWorkIsDoneAtOnce) {
+TEST(StartThread, RunsWorkInPlaceWithoutAThread) {
   EXPECT_EQ(compute_beside([] { return 6; }).get(), 6);
   const testing::NoThreads none;
   auto value = compute_beside([] { return 7; });
@@ -49,7 +49,7 @@ TEST(StartThread, WithoutOneTheWorkIsDoneAtOnce) {
   EXPECT_THROW(compute_beside([]() -> int { throw std::runtime_error("no"); }).get(), std::runtime_error);
 }
 
-TEST(StartThread, WithoutOneABackgroundJobEndsWithTheError) {
+TEST(StartThread, BackgroundJobFailsWithoutAThread) {
   const testing::NoThreads none;
   BackgroundJob<int> job([](const Progress&) -> Result<int> { return 1; });
   EXPECT_TRUE(job.view().is_done);

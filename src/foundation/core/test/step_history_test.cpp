@@ -8,7 +8,7 @@ namespace trocar {
 inline namespace core {
 namespace {
 
-TEST(StepHistory, AnySequenceWalksThroughTheSameValues) {
+TEST(StepHistory, UndoAndRedoVisitTheSameValues) {
   // Against a plain list of all values with an index.
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     StepHistory<int> history;
@@ -42,7 +42,7 @@ TEST(StepHistory, AnySequenceWalksThroughTheSameValues) {
   }
 }
 
-TEST(StepHistory, ForgetsTheOldestStepsAlone) {
+TEST(StepHistory, DropsOnlyTheOldestSteps) {
   StepHistory<int> history(3);
   for (int n = 1; n <= 10; ++n) history.step_to(n);
   for (int n = 0; n < 10; ++n) history.undo();
@@ -51,7 +51,7 @@ TEST(StepHistory, ForgetsTheOldestStepsAlone) {
   EXPECT_EQ(history.now(), 10);
 }
 
-TEST(StepHistory, PuttingAValueIsNoStepAndChangingAllReachesEveryOne) {
+TEST(StepHistory, PutAddsNoStepAndChangeAllEditsEveryValue) {
   StepHistory<int> history;
   history.step_to(1);
   history.step_to(2);

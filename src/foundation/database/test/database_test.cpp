@@ -49,7 +49,7 @@ class DatabaseFile : public ::testing::Test {
   fs::path file_ = folder_.path() / "new" / "a.sqlite";
 };
 
-TEST_F(DatabaseFile, IsMadeForThisUserAlone) {
+TEST_F(DatabaseFile, IsCreatedForThisUserOnly) {
   Database database = open();
   ASSERT_TRUE(migrate(database, kMark, kFirst));
   struct stat status {};
@@ -75,7 +75,7 @@ bool is_locked_for_others(const fs::path& file) {
 }
 
 // Without its lock another process believes to be alone, and removes the log that this one still uses.
-TEST_F(DatabaseFile, StaysLockedWhenItIsOpenedAgain) {
+TEST_F(DatabaseFile, StaysLockedWhenReopened) {
   Database database = open();
   ASSERT_TRUE(migrate(database, kMark, kFirst));
   ASSERT_TRUE(is_locked_for_others(file_));
@@ -87,7 +87,7 @@ TEST_F(DatabaseFile, StaysLockedWhenItIsOpenedAgain) {
   EXPECT_TRUE(is_locked_for_others(file_));
 }
 
-TEST_F(DatabaseFile, UndoesAFailedTransactionWhole) {
+TEST_F(DatabaseFile, RollsBackAFailedTransaction) {
   Database database = open();
   ASSERT_TRUE(migrate(database, kMark, kFirst));
   ASSERT_TRUE(add(database, 1));
@@ -125,7 +125,7 @@ TEST_F(DatabaseFile, IsMigratedStepByStepAndOnlyUpwards) {
   EXPECT_EQ(count(database), 1);
 }
 
-TEST_F(DatabaseFile, OfAnotherProgramIsRefusedUnchanged) {
+TEST_F(DatabaseFile, RefusesAnotherProgramsFileUnchanged) {
   {
     Database database = open();
     ASSERT_TRUE(database.run("x", [](soci::session& session) { session << "CREATE TABLE theirs (a INTEGER)"; }));
@@ -137,13 +137,13 @@ TEST_F(DatabaseFile, OfAnotherProgramIsRefusedUnchanged) {
   ASSERT_TRUE(database.run("x", [](soci::session& session) { session << "INSERT INTO theirs VALUES (1)"; }));
 }
 
-TEST_F(DatabaseFile, WithAnotherMarkIsRefused) {
+TEST_F(DatabaseFile, RefusesAnotherApplicationId) {
   Database database = open();
   ASSERT_TRUE(migrate(database, kMark, kFirst));
   EXPECT_FALSE(migrate(database, kMark + 1, kSecond));
 }
 
-TEST_F(DatabaseFile, IsMigratedOnceByManyAtTheSameTime) {
+TEST_F(DatabaseFile, MigratesOnceUnderConcurrency) {
   std::vector<Status> done(6);
   {
     std::vector<std::jthread> threads;
@@ -162,7 +162,7 @@ TEST_F(DatabaseFile, IsMigratedOnceByManyAtTheSameTime) {
   EXPECT_EQ(count(database), 120);
 }
 
-TEST_F(DatabaseFile, TellsThatTheDiskIsFull) {
+TEST_F(DatabaseFile, ReportsAFullDisk) {
   Database database = open();
   ASSERT_TRUE(migrate(database, kMark, kFirst));
   // As on a full disk: the file may not grow further.
@@ -176,7 +176,7 @@ TEST_F(DatabaseFile, TellsThatTheDiskIsFull) {
   EXPECT_EQ(count(database), 0);
 }
 
-TEST_F(DatabaseFile, TellsThatAFileIsNone) {
+TEST_F(DatabaseFile, ReportsANonDatabaseFile) {
   fs::create_directories(file_.parent_path());
   const auto error_of = [&] { return Database::open({file_, {}}, Missing::kRefuse).error().what; };
   EXPECT_EQ(error_of(), "no such database");
@@ -188,7 +188,7 @@ TEST_F(DatabaseFile, TellsThatAFileIsNone) {
   EXPECT_EQ(error_of(), "is a folder, not a database");
 }
 
-TEST_F(DatabaseFile, TellsThatItIsDamaged) {
+TEST_F(DatabaseFile, ReportsDamage) {
   {
     Database database = open();
     ASSERT_TRUE(migrate(database, kMark, kFirst));
@@ -203,7 +203,7 @@ TEST_F(DatabaseFile, TellsThatItIsDamaged) {
   EXPECT_NE(error.what.find("damaged"), std::string::npos) << error.text();
 }
 
-TEST_F(DatabaseFile, KeepsEveryByte) {
+TEST_F(DatabaseFile, RoundTripsEveryByte) {
   Database database = open();
   ASSERT_TRUE(migrate(database, kMark, kFirst));
   std::string bytes;

@@ -17,7 +17,7 @@ TEST(DatabaseUrl, IsAFileWithoutAScheme) {
   EXPECT_EQ(parse_url("a b/c:d.sqlite")->file, "a b/c:d.sqlite");
 }
 
-TEST(DatabaseUrl, IsShownWithoutPassword) {
+TEST(DatabaseUrl, HidesItsPassword) {
   const auto url = parse_url("postgres://anna:geheim@db.example:5433/trocar?sslmode=require");
   ASSERT_TRUE(url);
   EXPECT_FALSE(url->is_sqlite());

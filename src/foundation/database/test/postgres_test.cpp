@@ -49,7 +49,7 @@ class Postgres : public ::testing::Test {
   DatabaseUrl url_;
 };
 
-TEST_F(Postgres, UndoesAFailedTransactionWhole) {
+TEST_F(Postgres, RollsBackAFailedTransaction) {
   Database database = open();
   ASSERT_TRUE(migrate(database, 1, kSchema));
   ASSERT_TRUE(add(database, 1));
@@ -85,7 +85,7 @@ TEST_F(Postgres, KeepsEveryByteAndBit) {
   EXPECT_EQ(read_real, real);
 }
 
-TEST_F(Postgres, IsMigratedOnceByManyAtTheSameTime) {
+TEST_F(Postgres, MigratesOnceUnderConcurrency) {
   std::vector<Status> done(6);
   {
     std::vector<std::jthread> threads;
@@ -101,7 +101,7 @@ TEST_F(Postgres, IsMigratedOnceByManyAtTheSameTime) {
   EXPECT_EQ(count(database), 120);
 }
 
-TEST_F(Postgres, OfANewerProgramIsRefused) {
+TEST_F(Postgres, RefusesANewerSchema) {
   Database database = open();
   const std::vector<Migration> newer{kSchema[0], {"ALTER TABLE numbers ADD COLUMN name TEXT"}};
   ASSERT_TRUE(migrate(database, 1, newer));
@@ -110,7 +110,7 @@ TEST_F(Postgres, OfANewerProgramIsRefused) {
   EXPECT_NE(older.error().what.find("schema 2, this program knows up to 1"), std::string::npos);
 }
 
-TEST_F(Postgres, TellsWhyItCannotBeOpened) {
+TEST_F(Postgres, ReportsWhyItCannotBeOpened) {
   const auto error_of = [](const std::string& url) {
     const auto database = Database::open({{}, url}, Missing::kRefuse);
     return database ? std::string("opened") : database.error().text();

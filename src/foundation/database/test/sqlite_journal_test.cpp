@@ -83,14 +83,14 @@ class WithoutSharedMemory : public ::testing::TestWithParam<SharedMemory> {
   fs::path file_ = folder_.path() / "a.sqlite";
 };
 
-TEST(Journal, IsALogWhereMemoryCanBeShared) {
+TEST(Journal, IsAWriteAheadLogWithSharedMemory) {
   const TemporaryFolder folder;
   Database database = opened(folder / "a.sqlite");
   EXPECT_EQ(mode_of_file(database), "wal");
   EXPECT_EQ(database.note(), "");
 }
 
-TEST(Journal, IsNoLogInANetworkFileSystem) {
+TEST(Journal, IsARollbackJournalOnANetworkFileSystem) {
   const TemporaryFolder folder;
   const fs::path file = folder / "a.sqlite";
   { Database with_log = opened(file); }
@@ -104,7 +104,7 @@ TEST(Journal, IsNoLogInANetworkFileSystem) {
   EXPECT_EQ(pragma_integer(session, "synchronous"), 2);
 }
 
-TEST(Journal, StaysALogWhileAnotherProgramUsesIt) {
+TEST(Journal, StaysAWriteAheadLogWhileAnotherProgramUsesIt) {
   const TemporaryFolder folder;
   const fs::path file = folder / "a.sqlite";
   Database other = opened(file);
@@ -115,12 +115,12 @@ TEST(Journal, StaysALogWhileAnotherProgramUsesIt) {
   EXPECT_TRUE(add_rows(other, 1, 1));
 }
 
-TEST(NetworkFileSystem, IsNotALocalOne) {
+TEST(NetworkFileSystem, IsDistinguishedFromALocalOne) {
   EXPECT_FALSE(find_network_file_system("/proc/self/status"));
   EXPECT_FALSE(find_network_file_system("/no/such/folder/file"));
 }
 
-TEST_P(WithoutSharedMemory, ARollbackJournalIsUsedAndTold) {
+TEST_P(WithoutSharedMemory, UsesARollbackJournalAndReportsIt) {
   const OtherFileSystem other(GetParam());
   Database database = opened(file_);
   EXPECT_EQ(mode_of_file(database), "delete");
@@ -166,7 +166,7 @@ TEST_P(WithoutSharedMemory, TwoProgramsWriteWithoutLoss) {
 }
 
 // 1000 rows of 4 kB do not fit into SQLite's cache of 2 MB, so that parts of the transaction are in the file.
-TEST_P(WithoutSharedMemory, AKilledTransactionIsUndoneWhole) {
+TEST_P(WithoutSharedMemory, RollsBackAKilledTransaction) {
   int undone = 0;
   for (int writes = 5; writes < 3000; writes += 501) {
     fs::remove(file_);
@@ -196,7 +196,7 @@ TEST_P(WithoutSharedMemory, AKilledTransactionIsUndoneWhole) {
 INSTANTIATE_TEST_SUITE_P(SharedMemory, WithoutSharedMemory,
                          ::testing::Values(SharedMemory::kMissing, SharedMemory::kFails));
 
-TEST(Journal, AFileThatCannotBeWrittenIsStillRead) {
+TEST(Journal, ReadsAReadOnlyFile) {
   const TemporaryFolder folder;
   const fs::path file = folder / "a.sqlite";
   {

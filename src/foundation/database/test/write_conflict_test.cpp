@@ -47,7 +47,7 @@ class WriteConflict : public ::testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(Both, WriteConflict, ::testing::Values("sqlite", "postgresql"),
                          [](const ::testing::TestParamInfo<std::string>& tested) { return tested.param; });
 
-TEST_P(WriteConflict, IsNotSeenInASnapshot) {
+TEST_P(WriteConflict, IsInvisibleInASnapshot) {
   ASSERT_TRUE(first_->snapshot("x", [&](soci::session& session) {
     EXPECT_EQ(sum(session), 0);
     ASSERT_TRUE(second_->transaction("x", [](soci::session& other) { other << "UPDATE numbers SET value = 1"; }));
@@ -57,7 +57,7 @@ TEST_P(WriteConflict, IsNotSeenInASnapshot) {
 }
 
 /// Two that lock the same rows in another order: the server ends one of them, which is repeated.
-TEST_P(WriteConflict, OfTwoOrdersIsRepeated) {
+TEST_P(WriteConflict, RetriesADeadlock) {
   std::atomic<int> arrived{0};
   const auto add = [&](Database& database, int from, int to) {
     bool is_first_try = true;
@@ -82,7 +82,7 @@ TEST_P(WriteConflict, OfTwoOrdersIsRepeated) {
   EXPECT_EQ(first_->run("x", [](soci::session& session) { return sum(session); }).value(), 4);
 }
 
-TEST_P(WriteConflict, ThatRemainsIsAnError) {
+TEST_P(WriteConflict, FailsAfterRepeatedConflicts) {
   int tries = 0;
   const Status twice = first_->transaction("x", [&](soci::session& session) {
     ++tries;
@@ -93,7 +93,7 @@ TEST_P(WriteConflict, ThatRemainsIsAnError) {
   EXPECT_EQ(first_->run("x", [](soci::session& session) { return sum(session); }).value(), 0);
 }
 
-TEST(EmptyLog, LeavesNothingInItUnlessSomebodyReadsByIt) {
+TEST(EmptyLog, TruncatesTheLogUnlessAReaderUsesIt) {
   const TemporaryFolder folder;
   auto database = Database::open({folder / "a.sqlite", {}}, Missing::kCreate),
        other = Database::open({folder / "a.sqlite", {}}, Missing::kCreate);

@@ -11,7 +11,7 @@ namespace trocar {
 inline namespace geometry {
 namespace {
 
-TEST(ClampNorm, LeavesShortVectorsToTheBit) {
+TEST(ClampNorm, KeepsShortVectorsBitwise) {
   const Vec3 v(0.1, -0.2, 0.3);
   Vec3 kept = v;
   EXPECT_FALSE(clamp_norm(kept, v.norm()));

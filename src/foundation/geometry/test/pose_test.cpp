@@ -38,7 +38,7 @@ TEST(Pose, MapsPointsByRotationThenTranslation) {
   EXPECT_EQ(Pose() * Vec3(1, 2, 3), Vec3(1, 2, 3));
 }
 
-TEST(Pose, ComposesLikeMappingOneAfterTheOther) {
+TEST(Pose, CompositionMapsLikeSuccessivePoses) {
   Random random(1);
   for (int n = 0; n < 50; ++n) {
     const Pose X_AB = random_pose(random);
@@ -49,7 +49,7 @@ TEST(Pose, ComposesLikeMappingOneAfterTheOther) {
   }
 }
 
-TEST(Pose, InverseTakesBack) {
+TEST(Pose, InverseUndoesThePose) {
   Random random(2);
   for (int n = 0; n < 50; ++n) {
     const Pose X_AB = random_pose(random);
@@ -59,13 +59,13 @@ TEST(Pose, InverseTakesBack) {
   }
 }
 
-TEST(Pose, KnowsWhetherItIsFinite) {
+TEST(Pose, DetectsNonFiniteValues) {
   EXPECT_TRUE(Pose().is_finite());
   EXPECT_FALSE(Pose::translation({0, std::numeric_limits<double>::infinity(), 0}).is_finite());
   EXPECT_FALSE(Pose(Mat3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()).is_finite());
 }
 
-TEST(RotationBetween, TurnsOneDirectionIntoTheOtherByTheShortestWay) {
+TEST(RotationBetween, RotatesByTheSmallestAngle) {
   Random random(3);
   for (int n = 0; n < 100; ++n) {
     const Vec3 from = random_vec(random).normalized();

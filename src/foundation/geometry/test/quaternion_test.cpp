@@ -17,7 +17,7 @@ TEST(Quaternion, IsStoredWithTheScalarFirst) {
   EXPECT_EQ(wxyz[3], 0.0);
 }
 
-TEST(Quaternion, ReturnsToTheBit) {
+TEST(Quaternion, RoundTripsBitwise) {
   const std::array<double, 4> wxyz{0.1, -0.7, 3e-9, 12.0};
   EXPECT_EQ(to_wxyz(from_wxyz(wxyz)), wxyz);
 }

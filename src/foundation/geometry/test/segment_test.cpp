@@ -10,7 +10,7 @@ namespace trocar {
 inline namespace geometry {
 namespace {
 
-TEST(Segment, KnowsItsLengthDirectionAndPoints) {
+TEST(Segment, ComputesLengthDirectionAndPoints) {
   const Segment segment{{1, 2, 3}, {1, 2, 13}};
   EXPECT_DOUBLE_EQ(segment.length_mm(), 10.0);
   EXPECT_EQ(segment.direction(), Vec3(0, 0, 1));
@@ -27,13 +27,13 @@ TEST(Segment, ClosestPointIsClampedToTheEnds) {
   EXPECT_DOUBLE_EQ(distance_mm(segment, {13, 0, 4}), 5.0);
 }
 
-TEST(Segment, WithoutLengthIsAPoint) {
+TEST(Segment, ActsAsAPointWithoutLength) {
   const Segment point{{1, 1, 1}, {1, 1, 1}};
   EXPECT_EQ(closest_fraction(point, {4, 5, 1}), 0.0);
   EXPECT_DOUBLE_EQ(distance_mm(point, {4, 5, 1}), 5.0);
 }
 
-TEST(Segment, NoPointOfItIsCloserThanTheClosest) {
+TEST(Segment, ClosestPointHasTheSmallestDistance) {
   Random random(1);
   const auto coordinate = [&] { return random.uniform(-10.0, 10.0); };
   for (int n = 0; n < 200; ++n) {

@@ -48,7 +48,7 @@ TEST(TriangleMesh, VolumeAndAreaOfABox) {
   EXPECT_NEAR(area_mm2(mesh), 52.0, 1e-12);
 }
 
-TEST(TriangleMesh, VolumeDoesNotDependOnThePlace) {
+TEST(TriangleMesh, VolumeIsTranslationInvariant) {
   EXPECT_NEAR(enclosed_volume_mm3(box({2, 3, 4}, {500, -300, 100})), 24.0, 1e-6);
 }
 
@@ -59,7 +59,7 @@ TEST(TriangleMesh, VolumeIsNegativeInsideOut) {
   EXPECT_NEAR(area_mm2(mesh), 52.0, 1e-12);
 }
 
-TEST(TriangleMesh, OfASphereComesFromBelowWithTheSquareOfTheStep) {
+TEST(TriangleMesh, SphereVolumeConvergesQuadraticallyFromBelow) {
   const double volume = 4.0 / 3.0 * std::numbers::pi * 1000.0;
   const double area = 4.0 * std::numbers::pi * 100.0;
   const TriangleMesh coarse = sphere(10.0, 50, 100);
@@ -71,7 +71,7 @@ TEST(TriangleMesh, OfASphereComesFromBelowWithTheSquareOfTheStep) {
   EXPECT_NEAR((area - area_mm2(coarse)) / (area - area_mm2(fine)), 4.0, 0.05);
 }
 
-TEST(TriangleMesh, WithoutTrianglesIsNothing) {
+TEST(TriangleMesh, HasZeroVolumeAndAreaWithoutTriangles) {
   EXPECT_EQ(enclosed_volume_mm3({}), 0.0);
   EXPECT_EQ(area_mm2({}), 0.0);
 }

@@ -34,7 +34,7 @@ class LanguageTest : public ::testing::Test {
   Language german;
 };
 
-TEST_F(LanguageTest, IsWhatItsFileSays) {
+TEST_F(LanguageTest, ReadsCodeAndNameFromItsFile) {
   EXPECT_EQ(german.code(), "de");
   EXPECT_EQ(german.name(), "Deutsch");
   EXPECT_FALSE(german.is_english());
@@ -57,7 +57,7 @@ TEST_F(LanguageTest, TranslatesManySentences) {
   EXPECT_EQ(german.translate(english), expected);
 }
 
-TEST_F(LanguageTest, SaysWhetherEveryWordIsTranslated) {
+TEST_F(LanguageTest, ReportsUntranslatedWords) {
   EXPECT_FALSE(german.find("lumbar-3"));
   EXPECT_FALSE(german.find("passed lumbar-3"));
   EXPECT_FALSE(german.find("liver, lumbar-3"));
@@ -65,7 +65,7 @@ TEST_F(LanguageTest, SaysWhetherEveryWordIsTranslated) {
   EXPECT_EQ(german.find("3.5 mm"), "3,5 mm");
 }
 
-TEST_F(LanguageTest, EndsWithTextsMadeToNest) {
+TEST_F(LanguageTest, TerminatesOnNestedTexts) {
   for (const std::string word : {"2", "liver", "x"}) {
     std::string text = word;
     for (int n = 0; n < 2000; ++n) text += " of " + word + (n % 3 == 0 ? ", " + word : "");
@@ -92,7 +92,7 @@ TEST_F(LanguageTest, TranslatesThePageAndNotItsCode) {
   EXPECT_EQ(translate_page(german, "<p"), "<p");
 }
 
-TEST(Language, RefusesFilesThatAreNone) {
+TEST(Language, RefusesMalformedFiles) {
   const std::string head = R"({"language": "D", "decimal_sign": ",", "texts": {)";
   for (const std::string& text :
        {std::string("[]"), std::string("{}"), std::string(R"({"language": "D", "texts": {}})"),

@@ -21,7 +21,7 @@ struct Pair {
   std::uint64_t a = 0, b = 0;
 };
 
-TEST(TripleBuffer, GivesTheNewestValueOnceAsNew) {
+TEST(TripleBuffer, ReturnsTheNewestValueAsNewOnce) {
   TripleBuffer<int> buffer(7);
   EXPECT_FALSE(buffer.update());
   EXPECT_EQ(buffer.value(), 7);
@@ -33,7 +33,7 @@ TEST(TripleBuffer, GivesTheNewestValueOnceAsNew) {
   EXPECT_EQ(buffer.newest(), 2);
 }
 
-TEST(TripleBuffer, NeverTearsAndNeverGoesBackBetweenThreads) {
+TEST(TripleBuffer, NeverTearsOrRegressesBetweenThreads) {
   TripleBuffer<Pair> buffer;
   constexpr std::uint64_t kLast = 200'000;
   std::thread writer([&] {
@@ -51,7 +51,7 @@ TEST(TripleBuffer, NeverTearsAndNeverGoesBackBetweenThreads) {
   EXPECT_TRUE(is_valid);
 }
 
-TEST(SpscRing, KeepsEveryValueInOrderAndRefusesWhenFull) {
+TEST(SpscRing, KeepsOrderAndRefusesWhenFull) {
   SpscRing<int> ring(4);
   for (int i = 0; i < 4; ++i) EXPECT_TRUE(ring.push(i));
   EXPECT_FALSE(ring.push(4));
@@ -89,7 +89,7 @@ struct Mortal {
   int check;
 };
 
-TEST(Handover, FreesWhatNobodyUsesAndKeepsWhatIsInUse) {
+TEST(Handover, FreesOnlyUnusedObjects) {
   Handover<Mortal> handover;
   EXPECT_EQ(handover.acquire(), nullptr);
   auto first = std::make_shared<const Mortal>(1);
@@ -104,7 +104,7 @@ TEST(Handover, FreesWhatNobodyUsesAndKeepsWhatIsInUse) {
   EXPECT_EQ(handover.acquire(), nullptr);
 }
 
-TEST(Handover, NeverGivesAFreedObjectToTheOtherThread) {
+TEST(Handover, NeverReturnsAFreedObject) {
   Handover<Mortal> handover;
   std::atomic<bool> is_done{false};
   std::thread maker([&] {
@@ -119,7 +119,7 @@ TEST(Handover, NeverGivesAFreedObjectToTheOtherThread) {
   EXPECT_TRUE(is_valid);
 }
 
-TEST(LatencyHistogram, TellsQuantilesToWithinThreePercentOfTheSortedValues) {
+TEST(LatencyHistogram, QuantilesAreWithinThreePercent) {
   Random random(5);
   LatencyHistogram histogram;
   std::vector<std::int64_t> values;
@@ -137,7 +137,7 @@ TEST(LatencyHistogram, TellsQuantilesToWithinThreePercentOfTheSortedValues) {
   EXPECT_EQ(histogram.max_ns(), values.back());
 }
 
-TEST(LatencyHistogram, TakesZeroNegativeAndHuge) {
+TEST(LatencyHistogram, AcceptsZeroNegativeAndHugeValues) {
   LatencyHistogram histogram;
   EXPECT_EQ(histogram.quantile_ns(0.5), 0);
   histogram.add(0);
@@ -148,7 +148,7 @@ TEST(LatencyHistogram, TakesZeroNegativeAndHuge) {
   EXPECT_EQ(histogram.max_ns(), std::int64_t{1} << 62);
 }
 
-TEST(LoopStatistics, CountsAPeriodWhoseTickRanIntoTheNextAsMissed) {
+TEST(LoopStatistics, CountsAnOverrunPeriodAsMissed) {
   LoopStatistics statistics(1000);
   statistics.add(0, 10, 500, 0);
   statistics.add(1000, 1020, 2100, 0);  // done after the next began
@@ -162,7 +162,7 @@ TEST(LoopStatistics, CountsAPeriodWhoseTickRanIntoTheNextAsMissed) {
   EXPECT_NEAR(summary.lateness.max_us, 0.02, 1e-9);
 }
 
-TEST(PeriodicLoop, KeepsItsGridAndSkipsWhatItCouldNotServe) {
+TEST(PeriodicLoop, KeepsItsGridAndSkipsOverrunPeriods) {
   // No timing is asserted: only that begins lie on the grid and that skipped periods are told.
   constexpr std::int64_t kPeriod_ns = 200'000;
   std::atomic<bool> is_stopping{false};

@@ -11,7 +11,7 @@ bool is_accepted(std::string_view password, std::string_view account = "weber") 
   return check_new_password(password, account).has_value();
 }
 
-TEST(PasswordRules, LengthIsCountedInCodePoints) {
+TEST(PasswordRules, CountLengthInCodePoints) {
   EXPECT_FALSE(is_accepted("tribal plum"));
   EXPECT_TRUE(is_accepted("tribal plums"));
   EXPECT_FALSE(is_accepted("blåbærsylte"));  // 11 characters, 13 bytes
@@ -30,7 +30,7 @@ TEST(PasswordRules, AnyCharacterIsAllowed) {
   EXPECT_FALSE(is_accepted("not utf-8 at all \xFF\xFE"));
 }
 
-TEST(PasswordRules, NoComposition) {
+TEST(PasswordRules, RequireNoCharacterClasses) {
   EXPECT_TRUE(is_accepted("grinding copper lids"));
   EXPECT_TRUE(is_accepted("GRINDINGCOPPERLIDS"));
   EXPECT_TRUE(is_accepted("739164820557"));
@@ -49,7 +49,7 @@ TEST(PasswordRules, CommonPasswordsAreRefused) {
   }
 }
 
-TEST(PasswordRules, OtherPasswordsAreNotCommon) {
+TEST(PasswordRules, AcceptUncommonPasswords) {
   for (const char* fine : {"grinding copper lids", "correct horse battery staple", "password of a hedgehog",
                            "xK7#pQz!mV2w", "die Katze sitzt im Regal"}) {
     EXPECT_FALSE(is_common_password(fine)) << fine;
@@ -68,7 +68,7 @@ TEST(PasswordRules, ErrorsNeverShowThePassword) {
     EXPECT_EQ(check_new_password(bad, "weber").error().text().find(bad), std::string::npos);
 }
 
-TEST(PinRules, FourToTwelveDigits) {
+TEST(PinRules, RequireFourToTwelveDigits) {
   EXPECT_TRUE(check_new_pin("4711"));
   EXPECT_TRUE(check_new_pin("123456789012"));
   for (const char* bad : {"", "123", "1234567890123", "12a4", "12 34", "１２３４", "7777"})

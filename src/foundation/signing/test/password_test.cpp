@@ -12,7 +12,7 @@ std::string quick_hash(std::string_view password) {
   return hash_password(password, kQuick).value();
 }
 
-TEST(Password, IsKnownByItsHashAlone) {
+TEST(Password, IsVerifiedByItsHash) {
   const std::string hash = quick_hash("four words of nobody");
   EXPECT_TRUE(is_password(hash, "four words of nobody"));
   EXPECT_FALSE(is_password(hash, "four words of nobodY"));
@@ -21,7 +21,7 @@ TEST(Password, IsKnownByItsHashAlone) {
   EXPECT_EQ(hash.find("nobody"), std::string::npos);
 }
 
-TEST(Password, EveryByteCounts) {
+TEST(Password, ComparesEveryByte) {
   const std::string with_zero("a long\0password", 15);
   EXPECT_FALSE(is_password(quick_hash(with_zero), "a long"));
   EXPECT_TRUE(is_password(quick_hash(with_zero), with_zero));
@@ -29,11 +29,11 @@ TEST(Password, EveryByteCounts) {
   EXPECT_FALSE(is_password(quick_hash(longest), longest.substr(1)));
 }
 
-TEST(Password, HashOfTheSamePasswordHasAnotherSalt) {
+TEST(Password, HashUsesAFreshSalt) {
   EXPECT_NE(quick_hash("the same password"), quick_hash("the same password"));
 }
 
-TEST(Password, DefaultWorkIsArgon2idWith64MiBAndTwoPasses) {
+TEST(Password, DefaultHashIsArgon2idWith64MiB) {
   const std::string hash = hash_password("the default work").value();
   EXPECT_TRUE(hash.starts_with("$argon2id$v=19$m=65536,t=2,p=1$")) << hash;
   EXPECT_FALSE(needs_rehash(hash));
@@ -48,7 +48,7 @@ TEST(Password, AgreesWithTheReferenceImplementation) {
                           "password"));
 }
 
-TEST(Password, MalformedOrCostlyHashesAreOfNoPassword) {
+TEST(Password, RejectsMalformedOrCostlyHashes) {
   const std::string hash = quick_hash("a password");
   for (const std::string& bad :
        {std::string(), std::string("x"), hash.substr(0, hash.size() - 1), hash + "=", "$2b$10$" + hash,

@@ -47,7 +47,7 @@ TEST(SigningKey, AgreesWithRfc8032) {
   }
 }
 
-TEST(SigningKey, EveryBitOfASignatureCounts) {
+TEST(SigningKey, ChecksEveryBitOfASignature) {
   const auto key = SigningKey::make();
   const auto other = SigningKey::make();
   ASSERT_TRUE(key && other);
@@ -61,7 +61,7 @@ TEST(SigningKey, EveryBitOfASignatureCounts) {
   }
 }
 
-TEST(SigningKey, RefusesTextThatIsNoKey) {
+TEST(SigningKey, RefusesMalformedKeys) {
   const std::string hex = kVectors[0].public_key;
   EXPECT_TRUE(parse_public_key(hex));
   EXPECT_FALSE(parse_public_key(""));
@@ -71,7 +71,7 @@ TEST(SigningKey, RefusesTextThatIsNoKey) {
   EXPECT_FALSE(parse_signature(hex));
 }
 
-TEST(StationKey, IsMadeOnceForTheUserAlone) {
+TEST(StationKey, IsCreatedOnceForTheUserOnly) {
   const TemporaryFolder folder;
   const fs::path file = folder / "state/station.key";
   EXPECT_FALSE(load_station_key(file));
@@ -85,7 +85,7 @@ TEST(StationKey, IsMadeOnceForTheUserAlone) {
   EXPECT_EQ(std::distance(fs::directory_iterator(file.parent_path()), fs::directory_iterator()), 1);
 }
 
-TEST(StationKey, IsTheSameForAllThatMakeItTogether) {
+TEST(StationKey, IsTheSameForConcurrentCreators) {
   const TemporaryFolder folder;
   std::vector<PublicKey> keys(8);
   {
@@ -99,7 +99,7 @@ TEST(StationKey, IsTheSameForAllThatMakeItTogether) {
   for (const PublicKey& key : keys) EXPECT_EQ(key, keys.front());
 }
 
-TEST(StationKey, IsRefusedIfOthersCanReadItOrItIsDamaged) {
+TEST(StationKey, IsRefusedIfReadableByOthersOrDamaged) {
   const TemporaryFolder folder;
   const fs::path file = folder / "station.key";
   ASSERT_TRUE(open_station_key(file));
@@ -121,7 +121,7 @@ TEST(Sha256, AgreesWithFips180) {
   EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
-TEST(Sha256, OfAFileIsThatOfItsBytes) {
+TEST(Sha256, OfAFileEqualsThatOfItsBytes) {
   const TemporaryFolder folder;
   const std::string bytes(3'000'001, 'x');  // more than one piece
   ASSERT_TRUE(write_file_atomically(folder / "a", bytes));

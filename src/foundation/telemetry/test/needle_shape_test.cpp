@@ -13,7 +13,7 @@ NeedleShape bent_by(double tip_mm, std::uint8_t spans) {
   return shape;
 }
 
-TEST(NeedleShape, WithoutPointsIsTheStraightNeedle) {
+TEST(NeedleShape, IsStraightWithoutPoints) {
   const Pose X_PN = needle_pose({1.0, 2.0, 3.0}, Vec3::UnitX());
   const std::vector<Vec3> points_P = shaft_points({}, X_PN, 150.0);
   ASSERT_EQ(points_P.size(), 2u);
@@ -32,7 +32,7 @@ TEST(NeedleShape, SpansKeepTheirLength) {
   }
 }
 
-TEST(NeedleShape, DifferencesCountToTheLastPointOfEither) {
+TEST(NeedleShape, ComparesToTheLastPointOfEither) {
   EXPECT_EQ(largest_difference_mm({}, {}), 0.0);
   EXPECT_NEAR(largest_difference_mm({}, bent_by(2.0, 17)), 2.0, 1e-6);
   EXPECT_NEAR(largest_difference_mm(bent_by(2.0, 17), {}), 2.0, 1e-6);

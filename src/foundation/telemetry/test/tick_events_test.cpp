@@ -14,7 +14,7 @@ TEST(TickEvents, FillTheEntriesFromTheFront) {
   }
 }
 
-TEST(TickEvents, LeaveAFullSample) {
+TEST(TickEvents, AreDroppedByAFullSample) {
   TickSample sample;
   sample.events.fill({EventKind::kEnter, 7});
   EXPECT_FALSE(add_event(sample, limit_event(LimitReason::kFault)));

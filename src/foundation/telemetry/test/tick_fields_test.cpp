@@ -21,7 +21,7 @@ TEST(TickFields, DescribeEveryFieldOnce) {
   EXPECT_EQ(names.size(), kTickFieldCount);
 }
 
-TEST(TickFields, ColumnsHaveNamesOfTheirOwn) {
+TEST(TickFields, ColumnNamesAreUnique) {
   std::set<std::string> names;
   std::size_t columns = 0;
   for_each_tick_field([&](const auto& field) {

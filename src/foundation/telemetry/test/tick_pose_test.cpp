@@ -11,7 +11,7 @@ using testing::sample_at;
 
 const Pose kHeld = needle_pose({10.0, 20.0, 30.0}, Vec3(0.3, 1.0, -0.2).normalized());
 
-TEST(FeltNeedle, TurnsTheDevicesPoseToTheFeltAxis) {
+TEST(FeltNeedle, RotatesTheDevicePoseToTheFeltAxis) {
   TickSample sample = sample_at(kHeld);
   sample.axis = (sample.axis + 0.2 * sample.axis.unitOrthogonal()).normalized();
   sample.tip_mm += Vec3(1.0, 0.0, 0.0);
@@ -31,7 +31,7 @@ TickSample inserted(InsertionPhase phase) {
   return sample;
 }
 
-TEST(NeedlePlace, IsInTheChannelWhereverTheGripHasSwung) {
+TEST(NeedlePlace, IsInTheChannelForAnyGripAngle) {
   for (const InsertionPhase phase : {InsertionPhase::kInserted, InsertionPhase::kRetracting}) {
     const NeedlePlace place = needle_place(inserted(phase));
     EXPECT_NEAR((place.X_PN.R().col(2) - Vec3::UnitY()).norm(), 0.0, 1e-12);
@@ -40,7 +40,7 @@ TEST(NeedlePlace, IsInTheChannelWhereverTheGripHasSwung) {
   }
 }
 
-TEST(NeedlePlace, DrawsATipBackThatPressesOnALayer) {
+TEST(NeedlePlace, PullsBackATipThatPressesOnALayer) {
   TickSample sample = inserted(InsertionPhase::kLoading);
   sample.layer_displacement_mm = 0.7;
   const NeedlePlace place = needle_place(sample);

@@ -8,7 +8,7 @@
 namespace trocar::testing {
 namespace {
 
-TEST(ToolPose, IsThePoseItWasMadeOf) {
+TEST(ToolPose, RoundTripsAPose) {
   const Mat3 R = Eigen::AngleAxisd(2.5, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
   const Pose X(R, {12.0, -400.5, 1e3});
   const Pose back = telemetry::to_tool_pose(X).pose();
@@ -16,7 +16,7 @@ TEST(ToolPose, IsThePoseItWasMadeOf) {
   EXPECT_EQ(back.p(), X.p());
 }
 
-TEST(ToolPose, RefusesWhatIsNoPose) {
+TEST(ToolPose, RefusesInvalidPoses) {
   telemetry::ToolPose pose;
   EXPECT_TRUE(pose.is_valid());
   pose.rotation_wxyz = {0, 0, 0, 0};

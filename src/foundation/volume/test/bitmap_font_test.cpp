@@ -21,7 +21,7 @@ TEST(BitmapFont, EveryCharacterLooksDifferent) {
   EXPECT_EQ(glyph_row('\xff', 0), 0x1fU);
 }
 
-TEST(BitmapFont, DrawsDotsAsLargeAsAsked) {
+TEST(BitmapFont, ScalesItsDots) {
   RgbImage image(40, 20);
   draw_text(image, 1, 2, "L", {9, 9, 9}, 2);
   EXPECT_EQ(image.at(1, 2)[0], 9);

@@ -117,7 +117,7 @@ constexpr double kMostTooSmall = 0.5 + 1e-6;
 /// What the header states: seen on planes and on spheres of fifteen voxels and more.
 constexpr double kMostTooLarge = 0.55;
 
-TEST(SignedDistance, StaysAboutHalfAVoxelFromTheTruthOnSpheres) {
+TEST(SignedDistance, IsWithinAboutHalfAVoxelOnSpheres) {
   Random random(12);
   for (const Vec3& spacing_mm : {Vec3(1, 1, 1), Vec3(0.74, 0.74, 1.6)})
     for (int n = 0; n < 10; ++n) {
@@ -129,7 +129,7 @@ TEST(SignedDistance, StaysAboutHalfAVoxelFromTheTruthOnSpheres) {
     }
 }
 
-TEST(SignedDistance, StaysAboutHalfAVoxelFromTheTruthOnObliquePlanes) {
+TEST(SignedDistance, IsWithinAboutHalfAVoxelOnObliquePlanes) {
   Random random(13);
   for (const Vec3& spacing_mm : {Vec3(1, 1, 1), Vec3(0.74, 0.74, 1.6)})
     for (int n = 0; n < 20; ++n) {
@@ -141,7 +141,7 @@ TEST(SignedDistance, StaysAboutHalfAVoxelFromTheTruthOnObliquePlanes) {
     }
 }
 
-TEST(SignedDistance, OfAMaskWithoutSurfaceIsInfinite) {
+TEST(SignedDistance, IsInfiniteForAMaskWithoutSurface) {
   const GridGeometry geometry = plain_geometry({5, 4, 3});
   for (const float v : signed_distance_mm(MaskGrid(geometry, 0)).voxels)
     EXPECT_EQ(v, std::numeric_limits<float>::infinity());
@@ -168,7 +168,7 @@ TEST(DistanceToMask, EqualsBruteForceOnRandomMasks) {
     }
 }
 
-TEST(DistanceToMask, OfAnEmptyMaskIsInfinite) {
+TEST(DistanceToMask, IsInfiniteForAnEmptyMask) {
   for (const float v : distance_to_mask_mm(MaskGrid(plain_geometry({5, 4, 3}))).voxels)
     EXPECT_EQ(v, std::numeric_limits<float>::infinity());
 }

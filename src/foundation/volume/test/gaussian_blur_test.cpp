@@ -21,7 +21,7 @@ FloatGrid random_grid(std::int64_t i, std::int64_t j, std::int64_t k) {
   return grid;
 }
 
-TEST(GaussianBlur, OfAPointIsAGaussian) {
+TEST(GaussianBlur, TurnsAPointIntoAGaussian) {
   GridGeometry geometry;
   geometry.size = {41, 37, 33};
   FloatGrid grid(geometry);
@@ -35,7 +35,7 @@ TEST(GaussianBlur, OfAPointIsAGaussian) {
   EXPECT_NEAR(static_cast<double>(grid[{22, 19, 13}]), aside, 0.01 * peak);
 }
 
-TEST(GaussianBlur, TwiceIsOnceWithTheSumOfSquares) {
+TEST(GaussianBlur, AddsVariancesWhenAppliedTwice) {
   FloatGrid twice = random_grid(48, 40, 44), once = twice;
   gaussian_blur(twice, Vec3::Constant(1.5));
   gaussian_blur(twice, Vec3::Constant(2.0));
@@ -44,7 +44,7 @@ TEST(GaussianBlur, TwiceIsOnceWithTheSumOfSquares) {
     EXPECT_NEAR(static_cast<double>(twice[{n, 20, 22}]), static_cast<double>(once[{n, 20, 22}]), 2e-4);
 }
 
-TEST(GaussianBlur, IsTheSameOnOneThreadAndNearlyOnTheBaseline) {
+TEST(GaussianBlur, MatchesOneThreadExactlyAndTheBaselineClosely) {
   FloatGrid many = random_grid(53, 29, 31), one = many, baseline = many;
   gaussian_blur(many, Vec3(1.7, 0.0, 2.1));
   run_on_threads(1, [&] { gaussian_blur(one, Vec3(1.7, 0.0, 2.1)); });

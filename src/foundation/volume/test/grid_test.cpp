@@ -57,7 +57,7 @@ TEST(GridGeometry, MatchesWithinAHundredthOfAVoxel) {
   EXPECT_FALSE(geometry.matches(moved));
 }
 
-TEST(GridGeometry, MatchesNotWhereTheFarCornersPart) {
+TEST(GridGeometry, DoesNotMatchIfFarCornersDiffer) {
   Random random(3);
   const GridGeometry geometry = oblique_geometry({100, 90, 80}, random);
   GridGeometry other = geometry;

@@ -63,7 +63,7 @@ TEST(ConnectedComponents, DoNotJoinAcrossEdgesOrRowEnds) {
   EXPECT_EQ(connected_components(mask).voxel_counts.size(), 2u);
 }
 
-TEST(LargestComponent, KeepsThatAlone) {
+TEST(LargestComponent, KeepsOnlyTheLargest) {
   Random random(21);
   const MaskGrid mask = noise_mask(plain_geometry({15, 13, 11}), 0.25, random);
   const auto expected = flooded_components(mask).front();
@@ -72,7 +72,7 @@ TEST(LargestComponent, KeepsThatAlone) {
   for (const std::size_t n : expected) EXPECT_EQ(largest.voxels[n], 1);
 }
 
-TEST(LargestComponent, OfAnEmptyMaskIsEmpty) {
+TEST(LargestComponent, IsEmptyForAnEmptyMask) {
   const MaskGrid empty(plain_geometry({3, 3, 3}));
   EXPECT_EQ(largest_component(empty).voxels, empty.voxels);
   EXPECT_TRUE(connected_components(empty).voxel_counts.empty());
@@ -105,13 +105,13 @@ TEST(FillHoles, ClosesACavityButNotAnOpenOne) {
   EXPECT_EQ(fill_holes(box).voxels, box.voxels);
 }
 
-TEST(FillHoles, LeavesWhatReachesTheBorderOfTheGrid) {
+TEST(FillHoles, KeepsHolesThatReachTheGridBorder) {
   const MaskGrid tube = hollow_box({9, 9, 5}, {1, 1, -1}, {7, 7, 5});  // runs out of the grid above and below
   EXPECT_EQ(fill_holes(tube).voxels, tube.voxels);
   EXPECT_EQ(count_of(fill_holes_in_slices(tube)), 7 * 7 * 5);
 }
 
-TEST(FillHoles, InSlicesLeavesWhatReachesTheEdgeOfASlice) {
+TEST(FillHoles, InSlicesKeepsHolesThatReachTheSliceEdge) {
   const MaskGrid trough = hollow_box({9, 9, 5}, {-1, 1, -1}, {7, 7, 5});
   EXPECT_EQ(fill_holes_in_slices(trough).voxels, trough.voxels);
 }
@@ -144,7 +144,7 @@ TEST(Dilate, EqualsTheDefinition) {
   }
 }
 
-TEST(Erode, IsDilatingTheOutside) {
+TEST(Erode, EqualsDilatingTheOutside) {
   Random random(23);
   for (const double radius_mm : {0.0, 0.9, 1.0, 2.0, 3.7, 100.0}) {
     const MaskGrid mask = inverted(noise_mask(plain_geometry({12, 10, 8}, {1.0, 0.5, 2.0}), 0.01, random));
@@ -153,7 +153,7 @@ TEST(Erode, IsDilatingTheOutside) {
   }
 }
 
-TEST(Erode, DoesNotShrinkFromTheBorderOfTheGrid) {
+TEST(Erode, DoesNotShrinkFromTheGridBorder) {
   const MaskGrid full(plain_geometry({5, 5, 5}), 1);
   EXPECT_EQ(erode(full, 2.0).voxels, full.voxels);
 }

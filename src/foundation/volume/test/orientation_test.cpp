@@ -30,7 +30,7 @@ TEST(AlongP, FindsTheSameGridInAll48Orders) {
   EXPECT_EQ(orders, 48);
 }
 
-TEST(AlongP, KeepsEveryVoxelOfATurnedGridAtItsPlace) {
+TEST(AlongP, KeepsVoxelPositionsOfARotatedGrid) {
   Random random(3);
   for (int i = 0; i < 50; ++i) {
     const CtGrid grid = numbered(oblique_geometry({4, 3, 6}, random));
@@ -48,7 +48,7 @@ TEST(AlongP, KeepsEveryVoxelOfATurnedGridAtItsPlace) {
   }
 }
 
-TEST(AlongP, LeavesAGridThatRunsAlongPAlone) {
+TEST(AlongP, KeepsAGridAlreadyAlongP) {
   const CtGrid grid = numbered(plain_geometry({5, 4, 3}));
   EXPECT_TRUE(order_along_P(grid.geometry).is_identity());
   EXPECT_EQ(along_P(grid).voxels, grid.voxels);

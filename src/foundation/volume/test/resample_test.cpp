@@ -25,7 +25,7 @@ GridGeometry turned(const GridGeometry& source, const Index3& size, Random& rand
   return target;
 }
 
-TEST(ResampleLinear, OntoItsOwnGridChangesNothing) {
+TEST(ResampleLinear, IsIdentityOnItsOwnGrid) {
   Random random(30);
   const CtGrid ct = noise_ct(oblique_geometry({17, 19, 13}, random), random);
   EXPECT_EQ(resample_linear(ct, ct.geometry, -1024).voxels, ct.voxels);
@@ -48,7 +48,7 @@ TEST(ResampleLinear, RoundsTheTrilinearValue) {
   EXPECT_GT(inside, result.voxels.size() / 10);  // the grids do overlap
 }
 
-TEST(ResampleNearest, TakesTheNearestLabel) {
+TEST(ResampleNearest, SelectsTheNearestLabel) {
   Random random(32);
   LabelGrid labels(oblique_geometry({17, 19, 13}, random));
   for (auto& voxel : labels.voxels) voxel = static_cast<std::uint8_t>(1 + random.next() % 100);
@@ -61,7 +61,7 @@ TEST(ResampleNearest, TakesTheNearestLabel) {
   EXPECT_EQ(resample_nearest(labels, labels.geometry, 0).voxels, labels.voxels);
 }
 
-TEST(ResampleNearest, OfTwoVoxelsDoesNotDependOnRounding) {
+TEST(ResampleNearest, TiesDoNotDependOnRounding) {
   GridGeometry geometry;
   geometry.size = {1, 1, 40};
   geometry.spacing_mm = {1.0, 1.0, 2.0 / 3.0};

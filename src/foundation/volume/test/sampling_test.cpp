@@ -95,7 +95,7 @@ TEST(SampleLinear, ContinuesEdgeValues) {
   EXPECT_EQ(sample_linear(ct, {0.5, -10, -10}), 0.5);
 }
 
-TEST(SampleNearest, TakesTheClosestVoxelAndKnowsTheBox) {
+TEST(SampleNearest, SelectsTheClosestVoxelInsideTheBox) {
   CtGrid ct(plain_geometry({3, 1, 1}));
   ct.voxels = {10, 20, 30};
   const std::int16_t outside = -1;
@@ -108,7 +108,7 @@ TEST(SampleNearest, TakesTheClosestVoxelAndKnowsTheBox) {
   EXPECT_EQ(sample_nearest(ct, {std::numeric_limits<double>::quiet_NaN(), 0, 0}, outside), outside);
 }
 
-TEST(Gradient, OfAnAffineFieldIsItsSlopeInMm) {
+TEST(Gradient, OfAnAffineFieldIsItsSlope) {
   Random random(5);
   Grid<float> grid(oblique_geometry({9, 9, 9}, random));
   const Vec3 slope_P(3.0, -2.0, 0.5);
@@ -178,7 +178,7 @@ TEST(SampleSlice, HitsVoxelCentresExactly) {
   }
 }
 
-TEST(SampleSlice, ContinuesEdgeValuesForHalfAVoxelAndNotBeyond) {
+TEST(SampleSlice, ExtendsEdgeValuesByHalfAVoxelOnly) {
   CtGrid ct(plain_geometry({3, 2, 2}), 500);
   SlicePlane plane;
   plane.origin_P = {-1.0, 0.5, 0.5};
@@ -203,7 +203,7 @@ TEST(SampleSlice, ServesGridsOneVoxelThick) {
     }
 }
 
-TEST(SampleSlice, IsOutsideWhereThePlaneIsNotFinite) {
+TEST(SampleSlice, IsOutsideForANonFinitePlane) {
   const CtGrid ct(plain_geometry({4, 4, 4}), 5);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300}) {
     SlicePlane plane;
@@ -221,7 +221,7 @@ TEST(SampleSlice, IsOutsideWhereThePlaneIsNotFinite) {
   }
 }
 
-TEST(SampleSlice, FillsEverythingForAnEmptyGrid) {
+TEST(SampleSlice, IsOutsideForAnEmptyGrid) {
   SlicePlane plane;
   plane.columns = plane.rows = 8;
   std::vector<float> out(64, 0.0F);
@@ -256,7 +256,7 @@ TEST(SamplePoints, AgreesWithTheScalarReference) {
     expect_points_equal_reference(noise_ct(oblique_geometry({30, 40, 50}, random), random), count, random);
 }
 
-TEST(SamplePoints, IsOutsideForPointsThatAreNotFinite) {
+TEST(SamplePoints, IsOutsideForNonFinitePoints) {
   const CtGrid ct(plain_geometry({4, 4, 4}), 5);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();

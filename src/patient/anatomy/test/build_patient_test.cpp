@@ -45,7 +45,7 @@ bool has_warning(const Built& built, const std::string& text) {
                      [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
 }
 
-TEST(BuildPatient, ARayFromTheFlankCrossesFatMuscleAndLiverInOrder) {
+TEST(BuildPatient, LayersFatMuscleAndLiverFromTheFlank) {
   const Built built = build({liver()});
   ASSERT_TRUE(built.patient) << built.patient.error().text();
   std::vector<std::string> crossed;
@@ -57,7 +57,7 @@ TEST(BuildPatient, ARayFromTheFlankCrossesFatMuscleAndLiverInOrder) {
   EXPECT_EQ(crossed, (std::vector<std::string>{"", "fat", "muscle", "fat", "peritoneum", "liver"}));
 }
 
-TEST(BuildPatient, EveryVoxelOfTheBodyHasALabelAndNoneOutside) {
+TEST(BuildPatient, LabelsExactlyTheVoxelsOfTheBody) {
   const Built built = build({liver()});
   ASSERT_TRUE(built.patient);
   const VirtualPatient& patient = *built.patient;
@@ -67,14 +67,14 @@ TEST(BuildPatient, EveryVoxelOfTheBodyHasALabelAndNoneOutside) {
   for (const Label& label : patient.label_table.labels) EXPECT_NE(known.find(label.name), nullptr) << label.name;
 }
 
-TEST(BuildPatient, AirInsideIsLungOrGas) {
+TEST(BuildPatient, LabelsInnerAirAsLungOrGas) {
   const Built built = build({liver()});
   ASSERT_TRUE(built.patient);
   EXPECT_EQ(name_at(*built.patient, {60.0, 20.0, 10.0}), "lung");
   EXPECT_EQ(name_at(*built.patient, {45.0, -45.0, 0.0}), "gas");
 }
 
-TEST(BuildPatient, DistanceIsToTheSkinAndNotToTheEndsOfTheScan) {
+TEST(BuildPatient, MeasuresDistanceToTheSkinNotToTheScanEnds) {
   const Built built = build({liver()});
   ASSERT_TRUE(built.patient);
   const volume::GridGeometry& geometry = built.patient->ct.geometry;
@@ -85,7 +85,7 @@ TEST(BuildPatient, DistanceIsToTheSkinAndNotToTheEndsOfTheScan) {
   EXPECT_NEAR(middle(0), -Torso::kHalfDepthMm, kSpacingMm.x());
 }
 
-TEST(BuildPatient, WhereMasksOverlapTheMoreSpecialWins) {
+TEST(BuildPatient, PrefersTheMoreSpecificOfOverlappingMasks) {
   const auto ball = [](double radius_mm) {
     return [radius_mm](const Vec3& p_P) { return (p_P - Vec3(-50.0, -10.0, 0.0)).norm() < radius_mm; };
   };
@@ -103,7 +103,7 @@ TEST(BuildPatient, WhereMasksOverlapTheMoreSpecialWins) {
   }
 }
 
-TEST(BuildPatient, IdsFollowTheOrderOfTheFiles) {
+TEST(BuildPatient, NumbersLabelsInFileOrder) {
   LabelSource colon = source("colon", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
                                return (p_P - Vec3(80.0, -20.0, 0.0)).norm() < 15.0;
                              }));
@@ -114,7 +114,7 @@ TEST(BuildPatient, IdsFollowTheOrderOfTheFiles) {
   EXPECT_EQ(built.patient->label_table.find("liver")->tissue, "liver");
 }
 
-TEST(BuildPatient, AMaskOnAnotherGridLandsInItsPlace) {
+TEST(BuildPatient, ResamplesAMaskOnAnotherGrid) {
   // Turned by 90 degrees about z, other spacing, cut down to a box around the liver.
   volume::GridGeometry turned;
   turned.R_PV << 0, -1, 0, 1, 0, 0, 0, 0, 1;
@@ -133,7 +133,7 @@ TEST(BuildPatient, AMaskOnAnotherGridLandsInItsPlace) {
   }
 }
 
-TEST(BuildPatient, AMaskOfTheWholeBodyIsNoOrgan) {
+TEST(BuildPatient, DoesNotTreatABodyMaskAsAnOrgan) {
   LabelSource skin = source("skin", Torso::mask(Torso::grid(kSpacingMm), Torso::is_inside));
   const Built built = build({skin, liver()});
   ASSERT_TRUE(built.patient);
@@ -142,7 +142,7 @@ TEST(BuildPatient, AMaskOfTheWholeBodyIsNoOrgan) {
   EXPECT_EQ(name_at(*built.patient, {0.0, -105.0, 0.0}), "fat");
 }
 
-TEST(BuildPatient, AHollowMaskOfTheBodyStillHoldsItsLung) {
+TEST(BuildPatient, KeepsTheLungInsideAHollowBodyMask) {
   LabelSource skin = source("skin", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
                               return Torso::radius(p_P) < 0.99 && !Torso().is_lung(p_P);
                             }));
@@ -154,7 +154,7 @@ TEST(BuildPatient, AHollowMaskOfTheBodyStillHoldsItsLung) {
   EXPECT_EQ(name_at(*built.patient, {0.0, -109.5, 0.0}), "");
 }
 
-TEST(BuildPatient, IsTheSameInWhateverOrderTheVolumesAreStored) {
+TEST(BuildPatient, IsIndependentOfTheStorageOrder) {
   // Table and sheet, a lung that leaves the scan at both ends, a mask on its own finer grid.
   constexpr double kLength_mm = 48.0;  // short: 49 patients
   const volume::CtGrid ct = Torso().ct(Torso::grid({6, 5, 8}, kLength_mm));
@@ -180,7 +180,7 @@ TEST(BuildPatient, IsTheSameInWhateverOrderTheVolumesAreStored) {
   });
 }
 
-TEST(BuildPatient, AnImplausibleBodyMaskIsNotBelieved) {
+TEST(BuildPatient, IgnoresAnImplausibleBodyMask) {
   LabelSource skin = source("skin", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
                               return Torso::radius(p_P) < 1.0 && Torso::radius(p_P) > 0.95;
                             }));
@@ -189,7 +189,7 @@ TEST(BuildPatient, AnImplausibleBodyMaskIsNotBelieved) {
   EXPECT_EQ(name_at(*built.patient, {-50.0, -10.0, 0.0}), "liver");
 }
 
-TEST(BuildPatient, AnUnknownNameIsRefusedWithWhatWasMeant) {
+TEST(BuildPatient, RefusesAnUnknownNameAndSuggestsTheNearest) {
   LabelSource wrong = liver();
   wrong.names = {{1, "livr"}};
   wrong.file = "seg.nii.gz";
@@ -248,7 +248,7 @@ TEST(BuildPatient, AStructureFoundFromHuMustBeKnown) {
   EXPECT_NE(none.patient.error().where.find("structures.toml"), std::string::npos) << none.patient.error().text();
 }
 
-TEST(BuildPatient, EmptyMasksAreWarningsUnlessAllAre) {
+TEST(BuildPatient, WarnsOfEmptyMasksUnlessAllAreEmpty) {
   const LabelSource empty = source("spleen", volume::LabelGrid(Torso::grid(kSpacingMm)));
   const Built built = build({liver(), empty});
   ASSERT_TRUE(built.patient);
@@ -259,7 +259,7 @@ TEST(BuildPatient, EmptyMasksAreWarningsUnlessAllAre) {
   EXPECT_NE(nothing.patient.error().text().find("empty"), std::string::npos);
 }
 
-TEST(BuildPatient, ASegmentationOfAnotherPlaceIsRefused) {
+TEST(BuildPatient, RefusesASegmentationElsewhere) {
   LabelSource far = liver();
   far.labels.geometry.origin_P.x() += 2000.0;
   far.file = "other.nrrd";
@@ -269,7 +269,7 @@ TEST(BuildPatient, ASegmentationOfAnotherPlaceIsRefused) {
   EXPECT_NE(built.patient.error().text().find("does not overlap"), std::string::npos);
 }
 
-TEST(BuildPatient, ASegmentationOfAPartOfTheCtWorksAndNamesItsShare) {
+TEST(BuildPatient, AcceptsAPartialSegmentationAndReportsItsShare) {
   volume::GridGeometry half = Torso::grid(kSpacingMm);
   half.size[2] /= 2;
   const volume::LabelGrid mask = Torso::mask(half, Torso::is_liver);
@@ -285,7 +285,7 @@ TEST(BuildPatient, ASegmentationOfAPartOfTheCtWorksAndNamesItsShare) {
   EXPECT_FALSE(has_warning(build({liver()}), "% of the CT"));
 }
 
-TEST(BuildPatient, LabelsOfOneNameBecomeOneStructureWithAWarning) {
+TEST(BuildPatient, MergesLabelsOfOneNameWithAWarning) {
   const auto is_left_half = [](const Vec3& p_P) { return Torso::is_liver(p_P) && p_P.x() > -50.0; };
   LabelSource both = liver();
   for (std::size_t n = 0; n < both.labels.voxels.size(); ++n)
@@ -305,7 +305,7 @@ TEST(BuildPatient, LabelsOfOneNameBecomeOneStructureWithAWarning) {
   EXPECT_FALSE(has_warning(build({unused}), "labels are named"));
 }
 
-TEST(BuildPatient, OverlapsGoToTheSmallerStructureInAnyOrderAndAreTold) {
+TEST(BuildPatient, GivesOverlapsToTheSmallerStructureWithAWarning) {
   // A pancreas of the liver's priority that covers a corner of it.
   const LabelSource pancreas = source("pancreas", Torso::mask(Torso::grid(kSpacingMm), [](const Vec3& p_P) {
                                         return (p_P - Vec3(-30.0, -10.0, p_P.z())).norm() < 25.0;
@@ -323,7 +323,7 @@ TEST(BuildPatient, OverlapsGoToTheSmallerStructureInAnyOrderAndAreTold) {
   EXPECT_FALSE(has_warning(build({liver()}), "overlapping"));
 }
 
-TEST(BuildPatient, RegionsOfSeveralStructuresAreLeftOutWithAWarning) {
+TEST(BuildPatient, SkipsRegionsOfSeveralStructuresWithAWarning) {
   const Built built =
       build({liver(), source("abdominal_cavity", Torso::mask(Torso::grid(kSpacingMm), Torso::is_inside))});
   ASSERT_TRUE(built.patient) << built.patient.error().text();
@@ -331,7 +331,7 @@ TEST(BuildPatient, RegionsOfSeveralStructuresAreLeftOutWithAWarning) {
   EXPECT_TRUE(has_warning(built, "regions that hold several structures were left out: abdominal_cavity"));
 }
 
-TEST(BuildPatient, NamesWhatTheScanCuts) {
+TEST(BuildPatient, NamesStructuresCutByTheScan) {
   const Built built = build({liver()});  // a cylinder through the whole scan
   ASSERT_TRUE(built.patient);
   EXPECT_TRUE(has_warning(built, "cut off by the border of the CT: liver"));
@@ -344,7 +344,7 @@ TEST(BuildPatient, ACtWithoutABodyIsRefused) {
   EXPECT_NE(patient.error().text().find("too little fat and soft tissue"), std::string::npos);
 }
 
-TEST(BuildPatient, IslandsOfNoiseTakeTheTissueAroundThem) {
+TEST(BuildPatient, GivesNoiseIslandsTheSurroundingTissue) {
   // Single voxels of muscle HU in the subcutaneous fat and the other way round.
   const volume::GridGeometry geometry = Torso::grid(kSpacingMm);
   volume::CtGrid ct = Torso().ct(geometry);

@@ -44,7 +44,7 @@ std::vector<std::string> names_by_voxel(const VirtualPatient& patient) {
   return names;
 }
 
-TEST(WithSegmentedOnly, IsThePatientThatABuildMakesOfTheSmallerSegmentation) {
+TEST(WithSegmentedOnly, EqualsABuildFromTheSmallerSegmentation) {
   const VirtualPatient full = torso_patient(true);
   const VirtualPatient built = torso_patient(false);
   const auto partly = with_segmented_only(full, kOnlyLiver);
@@ -57,7 +57,7 @@ TEST(WithSegmentedOnly, IsThePatientThatABuildMakesOfTheSmallerSegmentation) {
   EXPECT_EQ(partly->content_hash, hash_patient(*partly));
 }
 
-TEST(WithSegmentedOnly, DerivesOnlyKindsThatTheFullPatientHas) {
+TEST(WithSegmentedOnly, DerivesOnlyKindsOfTheFullPatient) {
   const VirtualPatient full = torso_patient(true, {false, {}});
   const auto partly = with_segmented_only(full, kOnlyLiver);
   ASSERT_TRUE(partly) << partly.error().text();
@@ -66,7 +66,7 @@ TEST(WithSegmentedOnly, DerivesOnlyKindsThatTheFullPatientHas) {
   EXPECT_EQ(names_by_voxel(*partly), names_by_voxel(torso_patient(false, {false, {}})));
 }
 
-TEST(WithSegmentedOnly, OfNoTissueIsFoundFromTheCtAlone) {
+TEST(WithSegmentedOnly, WithoutTissuesUsesTheCtOnly) {
   const auto partly = with_segmented_only(torso_patient(true), {});
   ASSERT_TRUE(partly) << partly.error().text();
   for (const Label& label : partly->label_table.labels) EXPECT_TRUE(label.is_derived) << label.name;
@@ -74,7 +74,7 @@ TEST(WithSegmentedOnly, OfNoTissueIsFoundFromTheCtAlone) {
   EXPECT_EQ(partly->label_table.find("peritoneum"), nullptr);  // no organ, no membrane around it
 }
 
-TEST(RemoveFoundLabels, KeepsTheSegmentedAndTheThinStructures) {
+TEST(RemoveFoundLabels, KeepsSegmentedAndThinStructures) {
   VirtualPatient patient = torso_patient(false);
   const std::vector<std::string> before = names_by_voxel(patient);
   remove_found_labels(patient);

@@ -74,7 +74,7 @@ TEST(FindBody, KeepsTheLungBehindAThinChestWall) {
   EXPECT_LT(agreement.extra_ml, 0.01 * agreement.body_ml);
 }
 
-TEST(FindBody, FollowsABodyThatTheFieldOfViewCuts) {
+TEST(FindBody, FollowsABodyCutByTheFieldOfView) {
   volume::GridGeometry geometry = Torso::grid({3, 3, 3});
   geometry.size[0] = 60;  // from x = -220 to -40 mm: the left two thirds are missing
   const Agreement agreement = compare(find_in(Torso(), geometry), geometry);
@@ -82,7 +82,7 @@ TEST(FindBody, FollowsABodyThatTheFieldOfViewCuts) {
   EXPECT_EQ(agreement.extra_ml, 0.0);
 }
 
-TEST(FindBody, ThereIsNoneInAir) {
+TEST(FindBody, FindsNothingInAir) {
   const volume::MaskGrid body = find_body(volume::CtGrid(Torso::grid({6, 6, 6}), -1000));
   EXPECT_EQ(std::count(body.voxels.begin(), body.voxels.end(), 1), 0);
 }

@@ -29,7 +29,7 @@ const std::string& totalsegmentator_name(std::size_t number) {
   return known().totalsegmentator_names().at(number - 1);
 }
 
-TEST(Totalsegmentator, NumbersAreThoseOfTheClassMap) {
+TEST(Totalsegmentator, NumbersMatchTheClassMap) {
   EXPECT_EQ(totalsegmentator_name(1), "spleen");
   EXPECT_EQ(totalsegmentator_name(5), "liver");
   EXPECT_EQ(totalsegmentator_name(25), "sacrum");
@@ -41,7 +41,7 @@ TEST(Totalsegmentator, NumbersAreThoseOfTheClassMap) {
   EXPECT_EQ(known().totalsegmentator_names().size(), 117U);
 }
 
-TEST(Totalsegmentator, EveryNameIsDifferentAndKnown) {
+TEST(Totalsegmentator, NamesAreUniqueAndKnown) {
   std::set<std::string> names;
   for (const std::string& name : known().totalsegmentator_names()) {
     EXPECT_TRUE(names.insert(name).second) << name;
@@ -64,7 +64,7 @@ TEST(KnownStructures, TissueFollowsTheName) {
   EXPECT_EQ(tissue_of("fat"), "adipose");
 }
 
-TEST(KnownStructures, KnowsWhatLiesOnThePathsOfSpineBileDuctAndAscites) {
+TEST(KnownStructures, IncludeTheLayersOfAllPuncturePaths) {
   for (const auto& [name, tissue] :
        std::initializer_list<std::pair<const char*, const char*>>{{"supraspinous_ligament", "ligament"},
                                                                   {"interspinous_ligament", "ligament"},
@@ -80,7 +80,7 @@ TEST(KnownStructures, KnowsWhatLiesOnThePathsOfSpineBileDuctAndAscites) {
     EXPECT_EQ(tissue_of(name), tissue) << name;
 }
 
-TEST(KnownStructures, KnowsTheMaskNamesOf3dIrcadb) {
+TEST(KnownStructures, IncludeTheMaskNamesOf3dIrcadb) {
   for (const auto& [name, tissue] :
        std::initializer_list<std::pair<const char*, const char*>>{{"liver", "liver"},
                                                                   {"livertumor1", "liver_lesion"},
@@ -109,7 +109,7 @@ TEST(KnownStructures, CaseSeparatorsAndSideDoNotMatter) {
   EXPECT_EQ(tissue_of("Left Kidney"), "kidney");
 }
 
-TEST(KnownStructures, AVentricleWithASideIsTheHearts) {
+TEST(KnownStructures, TreatASidedVentricleAsOfTheHeart) {
   for (const char* name : {"Left Ventricle", "ventricle_right", "right ventricle 1", "Left_Ventricle_Cavity",
                            "left ventricle of heart", "heart_ventricle_left"})
     EXPECT_EQ(tissue_of(name), "organ") << name;
@@ -120,7 +120,7 @@ TEST(KnownStructures, AVentricleWithASideIsTheHearts) {
   EXPECT_EQ(known().find("ventricle_l"), nullptr);
 }
 
-TEST(KnownStructures, AreFoundInATurkishLocaleToo) {
+TEST(KnownStructures, AreFoundInATurkishLocale) {
   const trocar::testing::UserLocale user("tr_TR.UTF-8");
   if (!user.is_there()) GTEST_SKIP() << "tr_TR.UTF-8 is not on this machine";
   const volatile int small = (std::tolower)('I');  // the compiler takes it for no capital letter
@@ -135,7 +135,7 @@ TEST(KnownStructures, UnknownNamesAreNotGuessed) {
     EXPECT_EQ(known().find(name), nullptr) << name;
 }
 
-TEST(KnownStructures, WhatLiesInsideAnotherWins) {
+TEST(KnownStructures, GiveInnerStructuresPriority) {
   const auto priority = [](std::string_view name) { return known().find(name)->priority; };
   EXPECT_GT(priority("livertumor1"), priority("portalvein"));
   EXPECT_GT(priority("portalvein"), priority("liver"));
@@ -156,7 +156,7 @@ TEST(KnownStructures, BackgroundHasManyNames) {
     EXPECT_FALSE(known().is_background(name)) << name;
 }
 
-TEST(KnownStructures, ATypingErrorFindsTheNameMeant) {
+TEST(KnownStructures, SuggestTheNameForATypingError) {
   EXPECT_EQ(known().similar_names("livr", 1), std::vector<std::string>{"liver"});
   EXPECT_EQ(known().similar_names("vertebra_L6", 1).at(0).substr(0, 9), "vertebrae");
   EXPECT_EQ(known().similar_names("kidny_left", 1), std::vector<std::string>{"kidney_left"});
@@ -195,7 +195,7 @@ Result<KnownStructures> load(std::string_view structures, std::string_view label
   return KnownStructures::load(folder.path());
 }
 
-TEST(KnownStructures, LoadGivesWhatTheFilesSay) {
+TEST(KnownStructures, LoadMatchesTheFiles) {
   const auto few = load(kStructures, kLabels);
   ASSERT_TRUE(few) << few.error().text();
   ASSERT_NE(few->find("Rib_left_7"), nullptr);
@@ -218,7 +218,7 @@ TEST(KnownStructures, AMissingFileIsNamed) {
   EXPECT_NE(half.error().where.find("totalsegmentator.toml"), std::string::npos);
 }
 
-TEST(KnownStructures, BrokenRowsAreRefusedWithTheirPlace) {
+TEST(KnownStructures, RefuseMalformedRowsWithTheirLocation) {
   struct Change {
     std::string_view from, to, message;
   };

@@ -39,7 +39,7 @@ TEST(PatientHash, ChangesWithEveryPartOfTheContent) {
   EXPECT_TRUE(changed([](VirtualPatient& p) { p.label_table.labels[0].color[1] = 71; }));
 }
 
-TEST(PatientHash, DoesNotDependOnNameNorOnDigitsLostInAFile) {
+TEST(PatientHash, IgnoresTheNameAndDigitsLostInAFile) {
   const std::string hash = hash_patient(small_patient());
   VirtualPatient other = small_patient();
   other.name = "other";
@@ -48,7 +48,7 @@ TEST(PatientHash, DoesNotDependOnNameNorOnDigitsLostInAFile) {
   EXPECT_EQ(hash_patient(other), hash);
 }
 
-TEST(PatientHash, TextsDoNotRunIntoOneAnother) {
+TEST(PatientHash, SeparatesTexts) {
   VirtualPatient a = small_patient();
   VirtualPatient b = small_patient();
   a.label_table.labels[0].name = "liv";

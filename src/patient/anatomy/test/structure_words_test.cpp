@@ -20,7 +20,7 @@ TEST(StructureWords, PutTheSideInFront) {
   EXPECT_EQ(structure_words(""), "");
 }
 
-TEST(StructureWords, SayWhatGivesWay) {
+TEST(StructureWords, NameThePuncturedLayer) {
   EXPECT_EQ(layer_words("muscle"), "muscle fascia");
   EXPECT_EQ(layer_words("vessel"), "vessel wall");
   EXPECT_EQ(layer_words("skin"), "skin");

@@ -85,7 +85,7 @@ TEST(PatientMotion, FollowsClosedForms) {
   EXPECT_EQ(motion.region(inside), 1);
 }
 
-TEST(PatientMotion, InverseReturnsToTheSamePlace) {
+TEST(PatientMotion, InverseReturnsToTheSamePoint) {
   const auto model = made(sliding_parts());
   for (const auto& [diaphragm, chest] : {std::pair(1.5, 1.5), std::pair(-1.5, 1.0), std::pair(0.3, -1.5)}) {
     const PatientMotion motion(model.get(), state_of(diaphragm, chest));
@@ -118,7 +118,7 @@ TEST(PatientMotion, JacobianAndVelocityAreTheDerivatives) {
 }
 
 /// A force in A does the same work on a small motion in A as its image does on the image of the motion.
-TEST(PatientMotion, GradientsKeepTheirWork) {
+TEST(PatientMotion, ForceTransformPreservesWork) {
   const auto model = made(sliding_parts());
   const PatientMotion motion(model.get(), state_of(1.0, 1.0));
   const Vec3 p_A(5.0, -20.0, 30.0), force_A(1.0, -2.0, 0.5), step_A(0.3, 0.1, -0.2);
@@ -150,7 +150,7 @@ TEST(PatientMotion, ClosesGapsByTheNearestRegion) {
   EXPECT_LT((over.to_rest({62.0, 0.0, 0.0}) - Vec3(62.0, 0.0, 0.0)).norm(), 1e-6) << "the wall is listed first";
 }
 
-TEST(MotionClock, BreathesFromEndExpirationAndHolds) {
+TEST(MotionClock, BreathesFromEndExpirationAndHoldsBreath) {
   const auto model = made(sliding_parts());
   MotionClock clock{model.get(), {}};
   clock.drive.period_s = 4.0;
@@ -168,7 +168,7 @@ TEST(MotionClock, BreathesFromEndExpirationAndHolds) {
   EXPECT_TRUE(MotionClock{}.at(5.0).is_rest());
 }
 
-TEST(MotionClock, RefusesWhatNobodyBreathes) {
+TEST(MotionClock, RefusesImplausibleBreathing) {
   MotionDrive drive;
   EXPECT_TRUE(check(drive));
   drive.period_s = 0.0;
@@ -181,7 +181,7 @@ TEST(MotionClock, RefusesWhatNobodyBreathes) {
   EXPECT_FALSE(check(drive));
 }
 
-TEST(MotionFile, IsRestoredToTheBit) {
+TEST(MotionFile, RoundTripsBitwise) {
   const auto model = made(sliding_parts());
   const std::string text = to_toml(*model);
   const auto again = parse_motion(text, "motion.toml");
@@ -193,7 +193,7 @@ TEST(MotionFile, IsRestoredToTheBit) {
   EXPECT_NE(made(other)->hash(), model->hash());
 }
 
-TEST(MotionFile, RefusesWhatIsNoModel) {
+TEST(MotionFile, RefusesMalformedModels) {
   const std::string good = to_toml(*made(sliding_parts()));
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;

@@ -53,7 +53,7 @@ bool is_closed(const TriangleMesh& mesh) {
 }
 
 // Wherever the stop comes, no half-made surface is returned.
-TEST(ExtractSurface, EndsWhereItIsCancelled) {
+TEST(ExtractSurface, StopsWhenCancelled) {
   const volume::GridGeometry geometry = cube(150, Vec3::Ones());
   const volume::MaskGrid mask = ball(geometry, Vec3::Constant(75.0), 60.0);
   std::stop_source source;
@@ -76,7 +76,7 @@ TEST(ExtractSurface, ASphereKeepsVolumeAndRadius) {
     EXPECT_NEAR((vertex.cast<double>() - centre_P).norm(), kRadiusMm, 1.0);  // a voxel
 }
 
-TEST(ExtractSurface, SmoothingTakesAwayTheStairs) {
+TEST(ExtractSurface, SmoothingRemovesStairsteps) {
   const volume::MaskGrid mask = ball(cube(41, {1, 1, 1}), {20, 20, 20}, 15.0);
   SurfaceOptions rough;
   rough.smoothing_iterations = 0;
@@ -90,7 +90,7 @@ TEST(ExtractSurface, SmoothingTakesAwayTheStairs) {
   EXPECT_LT(std::abs(smooth_error), 0.02);
 }
 
-TEST(ExtractSurface, ATurnedAnisotropicGridLandsInItsPlace) {
+TEST(ExtractSurface, PlacesARotatedAnisotropicGrid) {
   volume::GridGeometry geometry;
   geometry.size = {60, 50, 24};
   geometry.spacing_mm = {0.8, 0.9, 2.5};
@@ -105,14 +105,14 @@ TEST(ExtractSurface, ATurnedAnisotropicGridLandsInItsPlace) {
     EXPECT_NEAR((vertex.cast<double>() - centre_P).norm(), 16.0, 2.5);  // the widest voxel
 }
 
-TEST(ExtractSurface, AStructureThatTheGridCutsIsClosedAtTheCut) {
+TEST(ExtractSurface, ClosesAStructureCutByTheGrid) {
   const volume::MaskGrid mask = ball(cube(30, {1, 1, 1}), {0, 15, 29}, 12.0);
   const TriangleMesh mesh = extract_surface(mask);
   EXPECT_TRUE(is_closed(mesh));
   EXPECT_NEAR(enclosed_volume_mm3(mesh) / voxel_volume_mm3(mask), 1.0, 0.02);
 }
 
-TEST(ExtractSurface, RaggedMasksAreClosedToo) {
+TEST(ExtractSurface, ClosesRaggedMasks) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Random random(seed);
     const volume::GridGeometry geometry = cube(24, {1, 1.3, 2});
@@ -122,7 +122,7 @@ TEST(ExtractSurface, RaggedMasksAreClosedToo) {
   }
 }
 
-TEST(ExtractSurface, ALargeStructureIsCoarserAndKeepsItsVolume) {
+TEST(ExtractSurface, CoarsensALargeStructureAndKeepsItsVolume) {
   // 1.8 million voxels of 0.6 mm, with ribs on it and a hollow in it.
   const volume::MaskGrid mask = fill(cube(160, {0.6, 0.6, 0.6}), [](const Vec3& p_P) {
     const Vec3 r = p_P - Vec3(48, 48, 48);
@@ -150,7 +150,7 @@ TEST(BoundedOccupancy, CountsTheFacesOfABlock) {
   EXPECT_EQ(detail::count_faces(detail::occupancy(volume::MaskGrid(grid), 0.0)), 0u);
 }
 
-TEST(BoundedOccupancy, NoiseIsMadeCoarserUntilItsSurfaceIsBounded) {
+TEST(BoundedOccupancy, CoarsensNoiseUntilItsSurfaceIsBounded) {
   const volume::GridGeometry grid = cube(64, {0.7, 0.7, 2.0});
   std::uint64_t n = 0;
   const volume::MaskGrid noise = fill(grid, [&](const Vec3&) { return uniform01(7, n++) < 0.5; });
@@ -181,7 +181,7 @@ TEST(ExtractSurface, SmoothingDoesNotStretch) {
   EXPECT_NEAR(sum[1] / count[1] - sum[0] / count[0], 180.0, 0.02);
 }
 
-TEST(ExtractSurface, AnEmptyMaskHasNone) {
+TEST(ExtractSurface, ReturnsNothingForAnEmptyMask) {
   EXPECT_TRUE(extract_surface(volume::MaskGrid(cube(8, {1, 1, 1}))).vertices.empty());
 }
 
@@ -202,7 +202,7 @@ anatomy::VirtualPatient small_patient() {
   return patient;
 }
 
-TEST(ExtractSurfaces, GivesSkinAndStructuresWithoutFillingsAndCrumbs) {
+TEST(ExtractSurfaces, ReturnsSkinAndStructuresWithoutTinyParts) {
   double last_fraction = 0.0;
   const auto meshes = extract_surfaces(small_patient(), {}, [&](std::string_view, double fraction) {
     EXPECT_GT(fraction, last_fraction);
@@ -217,7 +217,7 @@ TEST(ExtractSurfaces, GivesSkinAndStructuresWithoutFillingsAndCrumbs) {
     EXPECT_LT((vertex.cast<double>() - Vec3(39, 39, 39)).norm(), 17.0);
 }
 
-TEST(ExtractSurfaces, AnOrganGoesAboutItsLesions) {
+TEST(ExtractSurfaces, OrganSurfaceEnclosesItsLesions) {
   // One within it, one at its border; of both the organ's own surface shows nothing.
   anatomy::VirtualPatient patient = small_patient();
   const double whole_mm3 = [&] {
@@ -240,7 +240,7 @@ TEST(ExtractSurfaces, AnOrganGoesAboutItsLesions) {
   EXPECT_GT(enclosed_volume_mm3(meshes[2].mesh_P), 1000.0);
 }
 
-TEST(ExtractSurfaces, CrumbsAreAMatterOfTheOptions) {
+TEST(ExtractSurfaces, OptionsSetTheSmallestPart) {
   SurfaceOptions options;
   options.min_voxels = 1;
   const auto meshes = extract_surfaces(small_patient(), options);

@@ -12,7 +12,7 @@ TriangleMesh octahedron() {
   return mesh;
 }
 
-TEST(CloseHoles, AMissingTriangleComesBack) {
+TEST(CloseHoles, RestoresAMissingTriangle) {
   const double volume = enclosed_volume_mm3(octahedron());
   EXPECT_NEAR(volume, 4.0 / 3.0, 1e-6);
   for (std::size_t n = 0; n < 8; ++n) {
@@ -24,7 +24,7 @@ TEST(CloseHoles, AMissingTriangleComesBack) {
   }
 }
 
-TEST(CloseHoles, ALargerHoleIsSpannedByAFan) {
+TEST(CloseHoles, SpansALargerHoleByAFan) {
   TriangleMesh mesh = octahedron();
   mesh.triangles.resize(4);  // the upper half: a pyramid without its base
   detail::close_holes(mesh);
@@ -32,7 +32,7 @@ TEST(CloseHoles, ALargerHoleIsSpannedByAFan) {
   EXPECT_NEAR(enclosed_volume_mm3(mesh), 2.0 / 3.0, 1e-6);
 }
 
-TEST(CloseHoles, AClosedMeshStaysAsItIs) {
+TEST(CloseHoles, KeepsAClosedMesh) {
   TriangleMesh mesh = octahedron();
   detail::close_holes(mesh);
   EXPECT_EQ(mesh.triangles, octahedron().triangles);

@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 using namespace testing;
 
 /// Pages that compare people, and the values that they are made of: of this person nothing is left, in none of them.
-TEST(DeletionOfAPerson, IsSeenInTheStatisticsOfOthersAtOnce) {
+TEST(DeletionOfAPerson, UpdatesStatisticsOfOthersAtOnce) {
   ServiceLab lab;
   lab.log_in();
   const auto get = [&](const std::string& target) {

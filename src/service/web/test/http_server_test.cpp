@@ -79,7 +79,7 @@ class StreamedContent : public Transport {
   }
 };
 
-TEST_F(StreamedContent, ArrivesInPiecesWithItsEnd) {
+TEST_F(StreamedContent, ArrivesInChunksWithATerminator) {
   const std::string answer = get("/", "1.1");
   EXPECT_EQ(status_of(answer), 200);
   EXPECT_NE(answer.find("Transfer-Encoding: chunked\r\n"), std::string::npos);
@@ -90,14 +90,14 @@ TEST_F(StreamedContent, ArrivesInPiecesWithItsEnd) {
   EXPECT_TRUE(head.ends_with("\r\n\r\n")) << head;
 }
 
-TEST_F(StreamedContent, EndsWithTheConnectionOfAnOlderClient) {
+TEST_F(StreamedContent, EndsWithTheConnectionForHttp10) {
   const std::string answer = get("/", "1.0");
   EXPECT_EQ(status_of(answer), 200);
   EXPECT_EQ(answer.find("chunked"), std::string::npos);
   EXPECT_EQ(answer.size() - answer.find("\r\n\r\n") - 4, 300'000U);
 }
 
-TEST_F(StreamedContent, ThatFailsIsSeenToBeIncomplete) {
+TEST_F(StreamedContent, EndsWithoutTerminatorAfterAFailure) {
   const std::string answer = get("/fails", "1.1");
   EXPECT_EQ(status_of(answer), 200);
   EXPECT_FALSE(answer.ends_with("0\r\n\r\n"));
@@ -111,13 +111,13 @@ TEST_F(Transport, PipelinedRequestsAreAnsweredInOrder) {
   EXPECT_NE(answer.find("GET /2"), std::string::npos);
 }
 
-TEST_F(Transport, HeadHasNoContent) {
+TEST_F(Transport, AnswersHeadWithoutContent) {
   const std::string answer = answer_to(port(), "HEAD /x HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
   EXPECT_EQ(status_of(answer), 200);
   EXPECT_TRUE(answer.ends_with("\r\n\r\n")) << answer;
 }
 
-TEST_F(Transport, RefusesABodyAboveTheLimitBeforeItIsSent) {
+TEST_F(Transport, RefusesATooLargeBodyBeforeItIsSent) {
   const std::string answer = answer_to(port(), "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 1001\r\n\r\n");
   EXPECT_EQ(status_of(answer), 413) << answer;
   EXPECT_NE(answer.find("Connection: close"), std::string::npos) << answer;
@@ -126,7 +126,7 @@ TEST_F(Transport, RefusesABodyAboveTheLimitBeforeItIsSent) {
   EXPECT_EQ(requests_, 0);
 }
 
-TEST_F(Transport, AnswersAClientThatStillSendsATooLargeBody) {
+TEST_F(Transport, AnswersWhileATooLargeBodyIsSent) {
   const std::string body(200000, 'x');
   EXPECT_EQ(status_of(answer_to(port(), "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 200000\r\n\r\n" + body)), 413);
 }
@@ -152,7 +152,7 @@ TEST_F(Transport, AmbiguousEndsOfARequestAreRefused) {
   EXPECT_EQ(get.find("hidden"), std::string::npos) << get;
 }
 
-TEST_F(Transport, HeadersHaveALimit) {
+TEST_F(Transport, LimitsHeaderSize) {
   EXPECT_EQ(status_of(answer_to(port(), "GET /" + std::string(1100, 'a') + " HTTP/1.1\r\nHost: x\r\n\r\n")), 414);
   EXPECT_NE(status_of(answer_to(port(), "GET / HTTP/1.1\r\nX: " + std::string(20000, 'a') + "\r\n\r\n")), 200);
   std::string many = "GET / HTTP/1.1\r\n";
@@ -243,7 +243,7 @@ TEST_F(Transport, APortInUseIsNamed) {
   EXPECT_EQ(foreign.error().what, "not an address of this machine");
 }
 
-TEST_F(Transport, AnExceptionIsAnErrorWithoutDetails) {
+TEST_F(Transport, AnswersAnExceptionWithoutDetails) {
   server_.reset();
   auto server = HttpServer::start(
       options(), [](const HttpRequest&) -> HttpAnswer { throw std::runtime_error("SELECT secret FROM accounts"); });

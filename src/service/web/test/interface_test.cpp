@@ -48,7 +48,7 @@ TEST_F(Interface, OverviewSumsUpEveryPerson) {
   EXPECT_EQ(get("/api/overview?course=nobody's")["people"].size(), 0U);
 }
 
-TEST_F(Interface, AttemptsComeInPages) {
+TEST_F(Interface, ListsAttemptsInPages) {
   const auto person = lab_.add_person("Anna");
   std::vector<std::string> ids;
   for (int n = 0; n < 5; ++n) ids.push_back(lab_.add_attempt(person, 10.0 * n));
@@ -84,7 +84,7 @@ TEST_F(Interface, CurveFollowsTheOrderOfRecording) {
   get("/api/people/" + person.id + "/curve", 400);
 }
 
-TEST_F(Interface, AttemptShowsItsValuesBesideThoseOfExperts) {
+TEST_F(Interface, AttemptShowsItsValuesBesideExpertValues) {
   const auto person = lab_.add_person("Anna"), expert = lab_.add_person("Expert", results::Group::kExpert);
   const std::string id = lab_.add_attempt(person, 50.0);
   lab_.add_attempt(expert, 90.0);
@@ -103,7 +103,7 @@ TEST_F(Interface, AttemptShowsItsValuesBesideThoseOfExperts) {
   EXPECT_FALSE(trace["expert"].contains("expert"));
 }
 
-TEST_F(Interface, AnAttemptIsComparedWithTheOtherExpertsEachOnce) {
+TEST_F(Interface, ComparesAnAttemptWithEachOtherExpertOnce) {
   const auto person = lab_.add_person("Anna"), first = lab_.add_person("Expert 1", results::Group::kExpert),
              second = lab_.add_person("Expert 2", results::Group::kExpert);
   const std::string of_person = lab_.add_attempt(person, 50.0), of_first = lab_.add_attempt(first, 90.0);
@@ -131,7 +131,7 @@ TEST_F(Interface, AttemptsWithoutAResultAreNotPassed) {
   EXPECT_EQ(get("/api/people/" + person.id + "/attempts")["attempts"][0]["passed"], false);
 }
 
-TEST_F(Interface, ProficiencyCountsPeopleWhoAreNotThere) {
+TEST_F(Interface, ProficiencyCountsPeopleBelowTheCriterion) {
   const auto anna = lab_.add_person("Anna"), ben = lab_.add_person("Ben");
   for (const double score : {50.0, 85.0, 90.0, 95.0}) lab_.add_attempt(anna, score);
   for (int n = 0; n < 5; ++n) lab_.add_attempt(ben, std::nullopt);
@@ -151,7 +151,7 @@ TEST_F(Interface, ProficiencyCountsPeopleWhoAreNotThere) {
   get("/api/proficiency", 400);
 }
 
-TEST_F(Interface, ValidityOfACaseAndALevel) {
+TEST_F(Interface, FiltersValidityByCaseAndLevel) {
   lab_.add_attempt(lab_.add_person("Anna"), 50.0);
   EXPECT_EQ(get("/api/validity?task=liver-biopsy&patient=biopsy-1")["novices"], 1);
   EXPECT_EQ(get("/api/validity?task=liver-biopsy&patient=biopsy-2")["novices"], 0);
@@ -160,7 +160,7 @@ TEST_F(Interface, ValidityOfACaseAndALevel) {
   get("/api/validity?task=liver-biopsy&level=0.05", 400);
 }
 
-TEST_F(Interface, RecordingIsAFile) {
+TEST_F(Interface, ServesARecordingAsAFile) {
   const std::string id = lab_.add_attempt(lab_.add_person("Anna"), 50.0);
   const HttpAnswer answer = lab_.get("/api/attempts/" + id + "/recording");
   EXPECT_EQ(body_of(answer), "the session file");
@@ -196,7 +196,7 @@ TEST_F(Interface, DistributionsCountEveryPersonOnce) {
   get("/api/metrics/unknown?task=liver-biopsy", 404);
 }
 
-TEST_F(Interface, SimulatedPeopleDoNotJudgeAMetricOfRealOnes) {
+TEST_F(Interface, ExcludesSimulatedPeopleFromMetricValidity) {
   lab_.add_attempt(lab_.add_person("Expert", results::Group::kExpert), 90.0);
   lab_.add_attempt(lab_.add_person("Novice"), 50.0);
   const auto robot =
@@ -207,7 +207,7 @@ TEST_F(Interface, SimulatedPeopleDoNotJudgeAMetricOfRealOnes) {
   EXPECT_EQ(score["groups"].size(), 3U) << "but they are shown";
 }
 
-TEST_F(Interface, FewDataHaveAReason) {
+TEST_F(Interface, GivesAReasonForTooFewData) {
   lab_.add_attempt(lab_.add_person("Anna"), 50.0);
   const Json distribution = get("/api/metrics/score?task=liver-biopsy");
   EXPECT_EQ(distribution["auc"], nullptr);
@@ -220,7 +220,7 @@ TEST_F(Interface, FewDataHaveAReason) {
   EXPECT_TRUE(validity["metrics"][0]["reason"].is_string());
 }
 
-TEST_F(Interface, ValidityOfTwoGroups) {
+TEST_F(Interface, ComputesValidityOfTwoGroups) {
   for (int n = 0; n < 6; ++n)
     lab_.add_attempt(lab_.add_person("Expert " + std::to_string(n), results::Group::kExpert), 80.0 + n);
   for (int n = 0; n < 6; ++n) lab_.add_attempt(lab_.add_person("Novice " + std::to_string(n)), 30.0 + n);
@@ -258,7 +258,7 @@ TEST_F(Interface, UnknownIdsAreNotFound) {
   }
 }
 
-TEST_F(Interface, MethodsAndAddressesThatDoNotExist) {
+TEST_F(Interface, RefusesUnknownMethodsAndPaths) {
   const HttpAnswer method = lab_.send(lab_.request("DELETE", "/api/overview"));
   EXPECT_EQ(method.status, 405);
   EXPECT_EQ(header_of(method, "Allow"), "GET");
@@ -274,7 +274,7 @@ TEST_F(Interface, MethodsAndAddressesThatDoNotExist) {
   EXPECT_EQ(lab_.send(bad).status, 400);
 }
 
-TEST_F(Interface, ErrorsNeverShowInsides) {
+TEST_F(Interface, ErrorsHideInternals) {
   for (const HttpAnswer& answer : {lab_.get("/api/people/x"), lab_.get("/api/validity"),
                                    lab_.get("/api/metrics/x?task=y"), lab_.post("/api/forms", {{"items", 1}}),
                                    lab_.get("/api/export/attempts.csv?course=" + std::string(200, 'x'))}) {
@@ -285,7 +285,7 @@ TEST_F(Interface, ErrorsNeverShowInsides) {
   }
 }
 
-TEST_F(Interface, DeletionOfAPersonNeedsItsNameAndIsSeenAtOnce) {
+TEST_F(Interface, DeletingAPersonRequiresTheNameAndTakesEffectAtOnce) {
   const auto person = lab_.add_person("Anna");
   const std::string id = lab_.add_attempt(person, 50.0), target = "/api/people/" + person.id;
   get("/api/overview");
@@ -332,7 +332,7 @@ class Questionnaire : public Interface {
   }
 };
 
-TEST_F(Questionnaire, TheStandardFormIsInTheLanguageOfThePage) {
+TEST_F(Questionnaire, StandardFormUsesThePageLanguage) {
   const Json english = json_of(lab_.post("/api/forms", Json::object()));
   EXPECT_EQ(json_of(lab_.post("/api/forms", {{"language", "en"}}))["title"], english["title"]);
   const Json german = json_of(lab_.post("/api/forms", {{"language", "de"}}));
@@ -345,7 +345,7 @@ TEST_F(Questionnaire, TheStandardFormIsInTheLanguageOfThePage) {
   EXPECT_EQ(lab_.post("/api/forms", {{"language", "../de"}}).status, 400);
 }
 
-TEST_F(Questionnaire, IsAnsweredWithoutALoginAndSummedUp) {
+TEST_F(Questionnaire, AcceptsAnswersWithoutALogin) {
   const Json form = add_form();
   ASSERT_EQ(form["items"].size(), 5U) << "the default: four statements and a free text";
   const std::string token = form["token"].get<std::string>();
@@ -407,7 +407,7 @@ TEST_F(Questionnaire, MisspeltFieldsAreRefusedAndNamed) {
 }
 
 /// The limits of the page's fields are those of the server, in characters of any script.
-TEST_F(Questionnaire, IntroductionsHaveTheLengthThatThePageAllows) {
+TEST_F(Questionnaire, LimitsTheIntroductionLikeThePage) {
   const auto of = [](std::size_t characters) {
     std::string text;
     while (characters-- > 0) text += "\xe9\x87\x9d";
@@ -417,7 +417,7 @@ TEST_F(Questionnaire, IntroductionsHaveTheLengthThatThePageAllows) {
   EXPECT_EQ(lab_.post("/api/forms", {{"intro", of(2001)}}).status, 400);
 }
 
-TEST_F(Questionnaire, ClosedAndUnknownOnesLookTheSame) {
+TEST_F(Questionnaire, AnswersAlikeWhenClosedOrUnknown) {
   const Json form = add_form();
   const std::string id = form["id"].get<std::string>(),
                     address = "/api/public/forms/" + form["token"].get<std::string>();

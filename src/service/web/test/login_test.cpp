@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 using namespace testing;
 
-TEST(Login, GivesACookieAndTheTokenOfThePage) {
+TEST(Login, ReturnsACookieAndACsrfToken) {
   ServiceLab lab;
   const HttpAnswer answer = lab.log_in("dr. WEBER");
   EXPECT_EQ(answer.status, 200) << body_of(answer);
@@ -29,7 +29,7 @@ TEST(Login, GivesACookieAndTheTokenOfThePage) {
   EXPECT_EQ(json_of(lab.get("/api/me"))["csrf"], lab.csrf);
 }
 
-TEST(Login, TheDatabaseHoldsOnlyADigestOfTheToken) {
+TEST(Login, StoresOnlyADigestOfTheToken) {
   ServiceLab lab;
   lab.log_in();
   const std::string token = lab.cookie.substr(lab.cookie.find('=') + 1);
@@ -37,7 +37,7 @@ TEST(Login, TheDatabaseHoldsOnlyADigestOfTheToken) {
   EXPECT_TRUE(results::find_web_session(lab.repository(), signing::token_digest(token)).value());
 }
 
-TEST(Login, UnknownNamesAndWrongPasswordsHaveTheSameAnswer) {
+TEST(Login, AnswersUnknownNamesLikeWrongPasswords) {
   ServiceLab lab;
   const HttpAnswer unknown = lab.log_in("nobody", kPassword), wrong = lab.log_in(kAdmin, "another password");
   EXPECT_EQ(unknown.status, 401);
@@ -63,7 +63,7 @@ TEST(Login, IsSlowedDownAfterFiveFailures) {
 }
 
 /// A client can write X-Forwarded-For itself; a proxy appends the address that it sees.
-TEST(Login, BlanksAroundTheNameDoNotHelp) {
+TEST(Login, BlanksAroundTheNameDoNotBypassTheThrottle) {
   ServiceLab lab;
   const std::string name = kAdmin;
   for (const std::string& typed : {name, " " + name, name + " ", "  " + name + "   ", " " + name + "  "})
@@ -74,7 +74,7 @@ TEST(Login, BlanksAroundTheNameDoNotHelp) {
   EXPECT_NE(results::name_key("anna meier"), results::name_key("annameier"));
 }
 
-TEST(Login, AForgedAddressDoesNotHelp) {
+TEST(Login, ForgedAddressDoesNotBypassTheThrottle) {
   const auto status = [](ServiceLab& lab, const std::string& forwarded) {
     HttpRequest request = lab.request("POST", "/api/login", {{"name", kAdmin}, {"password", "wrong"}});
     std::erase_if(request.headers, [](const auto& h) { return h.first == "Origin"; });
@@ -94,7 +94,7 @@ TEST(Login, AForgedAddressDoesNotHelp) {
 
 /// Wrong tries from all the addresses of a network, and from many of them: who has logged in before can log in again,
 /// also after a restart of the server.
-TEST(Login, OfAKnownClientIsNotSlowedByOthers) {
+TEST(Login, KnownClientIsNotThrottledByOthers) {
   ServiceLab lab;
   lab.address = "2001:db8:1:2::1";
   ASSERT_EQ(lab.log_in().status, 200);
@@ -109,7 +109,7 @@ TEST(Login, OfAKnownClientIsNotSlowedByOthers) {
   EXPECT_EQ(lab.log_in().status, 200) << "another address of the network that is known";
 }
 
-TEST(Login, FromAllAddressesOfANetworkLeavesTheOwnerAPlace) {
+TEST(Login, FloodFromOneNetworkDoesNotBlockTheOwner) {
   ServiceLab lab;
   for (int n = 0; n < 500; ++n) {
     lab.address = "2001:db8:1:2::" + std::to_string(n);
@@ -130,7 +130,7 @@ TEST(Login, IsLoggedWithoutThePassword) {
   EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1) << log;
 }
 
-TEST(Login, ReplacesThePresentSession) {
+TEST(Login, ReplacesTheCurrentSession) {
   ServiceLab lab;
   lab.log_in();
   const std::string first = lab.cookie;
@@ -169,7 +169,7 @@ int status_of(ServiceLab& lab, const Route& route) {
   return lab.send(lab.request(std::string(route.method), target_of(route))).status;
 }
 
-TEST(Session, IsNeededForEverythingButThePublicAddresses) {
+TEST(Session, IsRequiredExceptForPublicPaths) {
   ServiceLab lab;
   std::size_t closed = 0;
   for (const Route& route : all_routes()) {
@@ -182,7 +182,7 @@ TEST(Session, IsNeededForEverythingButThePublicAddresses) {
   EXPECT_EQ(lab.get("/api/public/forms/x").status, 404);
 }
 
-TEST(Session, ForgedCookiesAreNone) {
+TEST(Session, RejectsForgedCookies) {
   ServiceLab lab;
   lab.log_in();
   const std::string own = lab.cookie;
@@ -197,7 +197,7 @@ TEST(Session, ForgedCookiesAreNone) {
   EXPECT_EQ(lab.get("/api/me").status, 200);
 }
 
-TEST(Session, EndsWhenItIsIdleOldOrFromTheFuture) {
+TEST(Session, EndsWhenIdleOldOrFromTheFuture) {
   ServiceLab idle;
   idle.log_in();
   idle.pass(29min);
@@ -233,7 +233,7 @@ TEST(Session, LogoutEndsIt) {
   EXPECT_EQ(lab.get("/api/me").status, 401);
 }
 
-TEST(Session, OverTlsTheCookieIsOfThisHostAlone) {
+TEST(Session, CookieIsHostOnlyOverTls) {
   ServiceLab lab(true);
   HttpRequest request = lab.request("POST", "/api/login", {{"name", kAdmin}, {"password", kPassword}});
   for (auto& [name, value] : request.headers)
@@ -301,7 +301,7 @@ TEST(Csrf, BodiesOfFormsAreRefused) {
   }
 }
 
-TEST(Password, ChangeEndsTheOtherSessionsAndKeepsThisOne) {
+TEST(Password, ChangeEndsOnlyOtherSessions) {
   ServiceLab lab;
   lab.log_in();
   const std::string other_cookie = lab.cookie, other_csrf = lab.csrf;
@@ -328,7 +328,7 @@ TEST(Password, ChangeEndsTheOtherSessionsAndKeepsThisOne) {
   EXPECT_EQ(lab.log_in(kAdmin, "seven quiet otters").status, 200);
 }
 
-TEST(Password, AnOldHashIsRenewedAtTheNextLogin) {
+TEST(Password, LoginRenewsAnOldHash) {
   ServiceLab lab;
   const std::string weak = signing::hash_password(kPassword, {1, std::size_t{8} << 10}).value();
   ASSERT_TRUE(results::add_account(lab.repository(), "old", results::Role::kInstructor, weak, lab.now.utc));
@@ -338,7 +338,7 @@ TEST(Password, AnOldHashIsRenewedAtTheNextLogin) {
   EXPECT_FALSE(signing::needs_rehash(account->password_hash, kQuickWork));
 }
 
-TEST(Accounts, AreOfAdminsAlone) {
+TEST(Accounts, AreManagedOnlyByAdmins) {
   ServiceLab lab;
   lab.log_in(kInstructor);
   std::set<std::string> of_admins;
@@ -388,7 +388,7 @@ TEST(Accounts, AreAddedListedAndRemoved) {
 }
 
 /// A path is split before it is decoded: an older program took names with a slash.
-TEST(Accounts, OfAnyNameAreRemoved) {
+TEST(Accounts, WithAnyNameAreRemoved) {
   ServiceLab lab;
   lab.log_in();
   ASSERT_TRUE(lab.repository().database().transaction("x", [](soci::session& session) {

@@ -73,7 +73,7 @@ TEST_F(Loopback, EveryAnswerHasTheSecurityHeaders) {
   }
 }
 
-TEST_F(Loopback, PathsCannotLeaveThePage) {
+TEST_F(Loopback, PathsCannotLeaveTheWebRoot) {
   for (const char* target :
        {"/../results.sqlite", "/%2e%2e/results.sqlite", "/..%2fresults.sqlite", "/%2e%2e%5cresults.sqlite",
         "/assets/../../results.sqlite", "/assets/%2e%2e/%2e%2e/results.sqlite", "//etc/passwd.txt",
@@ -84,7 +84,7 @@ TEST_F(Loopback, PathsCannotLeaveThePage) {
   }
 }
 
-TEST_F(Loopback, LimitsHoldForTheInterface) {
+TEST_F(Loopback, EnforcesInterfaceLimits) {
   const std::string head = "POST /api/login HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n";
   const auto post = [&](const std::string& type, const std::string& body) {
     return status_of(answer_to(server_->port(), head + "Content-Type: " + type + "\r\nContent-Length: " +

@@ -24,7 +24,7 @@ AnswerCache::Value text(std::string content) {
   return std::make_shared<const std::string>(std::move(content));
 }
 
-TEST(AnswerCache, MakesAnAnswerOnceASecond) {
+TEST(AnswerCache, RenewsAnAnswerOncePerSecond) {
   AnswerCache cache;
   int made = 0;
   const auto make = [&]() -> Result<AnswerCache::Value> { return text(std::to_string(++made)); };
@@ -66,7 +66,7 @@ TEST(AnswerCache, WaitersShareOneAnswer) {
   EXPECT_EQ(made, 1);
 }
 
-TEST(AnswerCache, AFailedRenewalIsSeenByTheNextRequest) {
+TEST(AnswerCache, NextRequestReceivesAFailedRenewal) {
   AnswerCache cache;
   ASSERT_TRUE(cache.get("a", kFirstAsked, [] { return text("old"); }));
   const auto no = []() -> Result<AnswerCache::Value> { return fail("no", "where", "advice"); };
@@ -76,7 +76,7 @@ TEST(AnswerCache, AFailedRenewalIsSeenByTheNextRequest) {
 }
 
 /// A deletion while an answer is being made: the answer may show the deleted person and must not be kept.
-TEST(AnswerCache, AnswersOfBeforeAChangeAreNotKept) {
+TEST(AnswerCache, DropsAnswersFromBeforeAChange) {
   AnswerCache cache;
   ASSERT_TRUE(cache.get("a", kFirstAsked, [&] {
     cache.clear();
@@ -123,13 +123,13 @@ class Page : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Page, OwnAddressesShowTheIndex) {
+TEST_F(Page, OwnPathsServeTheIndex) {
   for (const char* path : {"/", "/people/0123", "/q/token", "/unknown"}) EXPECT_EQ(*get(path).body, "<html>") << path;
   EXPECT_EQ(get("/").content_type, "text/html; charset=utf-8");
   EXPECT_EQ(header_of(get("/"), "Cache-Control"), "no-cache");
 }
 
-TEST_F(Page, AssetsAreKeptByTheBrowser) {
+TEST_F(Page, AssetsAreCacheable) {
   const HttpAnswer script = get("/assets/index-1234.js");
   EXPECT_EQ(*script.body, "code");
   EXPECT_EQ(script.content_type, "text/javascript; charset=utf-8");
@@ -139,7 +139,7 @@ TEST_F(Page, AssetsAreKeptByTheBrowser) {
   EXPECT_FALSE(again.body);
 }
 
-TEST_F(Page, OtherFilesCannotBeReached) {
+TEST_F(Page, OtherFilesAreUnreachable) {
   std::ofstream(folder_ / "../secret.txt") << "secret";
   for (const char* path :
        {"/../secret.txt", "/assets/../../secret.txt", "/..%2fsecret.txt", "//secret.txt", "/./index.html",
@@ -153,7 +153,7 @@ TEST_F(Page, OtherFilesCannotBeReached) {
   std::filesystem::remove(folder_ / "../secret.txt");
 }
 
-TEST_F(Page, ALinkOutOfTheFolderAnUnknownTypeAndNoIndexAreErrors) {
+TEST_F(Page, RefusesOutsideLinksUnknownTypesAndAMissingIndex) {
   write("assets/tool.exe", "x");
   EXPECT_FALSE(StaticFiles::load(folder_.path()));
   std::filesystem::remove(folder_ / "assets/tool.exe");
@@ -164,7 +164,7 @@ TEST_F(Page, ALinkOutOfTheFolderAnUnknownTypeAndNoIndexAreErrors) {
   EXPECT_FALSE(StaticFiles::load(folder_.path()));
 }
 
-TEST(AnswerCache, WithoutAThreadRequestsRenewTheAnswer) {
+TEST(AnswerCache, RenewsInTheRequestWithoutAThread) {
   const trocar::testing::NoThreads none;
   AnswerCache cache;
   int made = 0;
@@ -175,14 +175,14 @@ TEST(AnswerCache, WithoutAThreadRequestsRenewTheAnswer) {
   cache.finish_renewal();
 }
 
-TEST(AnswerCache, GivesWhatItsMakerThrowsAsAnError) {
+TEST(AnswerCache, ConvertsExceptionsToErrors) {
   AnswerCache cache;
   EXPECT_FALSE(cache.get("a", kFirstAsked, []() -> Result<AnswerCache::Value> { throw std::runtime_error("no"); }));
   EXPECT_EQ(**cache.get("a", kFirstAsked, [] { return text("yes"); }), "yes");
 }
 
 /// Whatever is thrown, and wherever: a later request makes the value again.
-TEST(AnswerCache, IsNotBlockedByAKeyWhoseValueFailed) {
+TEST(AnswerCache, RetriesAKeyWhoseValueFailed) {
   AnswerCache cache;
   EXPECT_FALSE(cache.get("a", kFirstAsked, []() -> Result<AnswerCache::Value> { throw 1; }));
   EXPECT_EQ(**cache.get("a", kFirstAsked, [] { return text("yes"); }), "yes");
@@ -195,7 +195,7 @@ TEST(AnswerCache, IsNotBlockedByAKeyWhoseValueFailed) {
   EXPECT_EQ(**fails_to_count.get("a", kFirstAsked, [] { return text("yes"); }), "yes");
 }
 
-TEST(WorkerThreads, WithoutAThreadTheCallerDoesTheJob) {
+TEST(WorkerThreads, CallerRunsTheJobWithoutAThread) {
   std::atomic<int> waiting{0};
   int done = 0;
   detail::WorkerThreads workers(2, waiting);

@@ -27,7 +27,7 @@ class PeopleChange : public ::testing::Test {
   ServiceLab lab_;
 };
 
-TEST_F(PeopleChange, APersonIsAddedRenamedAndMovedAndItIsSeenAtOnce) {
+TEST_F(PeopleChange, AddsRenamesAndMovesAPersonAtOnce) {
   const HttpAnswer added =
       lab_.post("/api/people", {{"name", " Anna  Meier "}, {"group", "trainee"}, {"course", "Spring"}});
   ASSERT_EQ(added.status, 201) << body_of(added);
@@ -45,7 +45,7 @@ TEST_F(PeopleChange, APersonIsAddedRenamedAndMovedAndItIsSeenAtOnce) {
   EXPECT_EQ(person("Anna Huber")["group"], "expert") << "what is not named stays";
 }
 
-TEST_F(PeopleChange, AChangeIsDoneWhollyOrNotAtAll) {
+TEST_F(PeopleChange, IsAtomic) {
   const auto anna = lab_.add_person("Anna");
   lab_.add_person("Ben");
   const std::string target = "/api/people/" + anna.id;
@@ -62,7 +62,7 @@ TEST_F(PeopleChange, AChangeIsDoneWhollyOrNotAtAll) {
     EXPECT_EQ(lab_.post("/api/people", bad).status, 400) << bad;
 }
 
-TEST_F(PeopleChange, AnotherGroupIsSeenInTheStatisticsOfOthersAtOnce) {
+TEST_F(PeopleChange, GroupChangeUpdatesStatisticsOfOthersAtOnce) {
   const auto anna = lab_.add_person("Anna"), ben = lab_.add_person("Ben");
   lab_.add_attempt(anna, 90.0);
   lab_.add_attempt(ben, 50.0);
@@ -73,7 +73,7 @@ TEST_F(PeopleChange, AnotherGroupIsSeenInTheStatisticsOfOthersAtOnce) {
   EXPECT_EQ(json_of(lab_.get(curve))["experts"]["n"], 1);
 }
 
-TEST_F(PeopleChange, SeveralPeopleMoveTogetherOrNobodyDoes) {
+TEST_F(PeopleChange, MovesSeveralPeopleAtomically) {
   const auto anna = lab_.add_person("Anna"), ben = lab_.add_person("Ben");
   const auto move = [&](const Json& people) {
     return lab_.post("/api/people/move", {{"people", people}, {"course", "Spring"}}).status;
@@ -87,7 +87,7 @@ TEST_F(PeopleChange, SeveralPeopleMoveTogetherOrNobodyDoes) {
   EXPECT_EQ(person("Ben")["course"], "Spring");
 }
 
-TEST_F(PeopleChange, ACourseIsRenamedAndRemovedWhenNobodyIsInIt) {
+TEST_F(PeopleChange, RenamesCoursesAndRemovesEmptyOnes) {
   const auto anna = lab_.add_person("Anna"), ben = lab_.add_person("Ben");
   EXPECT_EQ(send("PUT", "/api/people/" + anna.id, {{"course", "Spring/2026 1.0"}}).status, 200);
   EXPECT_EQ(send("PUT", "/api/people/" + ben.id, {{"course", "Autumn"}}).status, 200);
@@ -103,7 +103,7 @@ TEST_F(PeopleChange, ACourseIsRenamedAndRemovedWhenNobodyIsInIt) {
   EXPECT_EQ(courses[0]["name"], "Autumn");
 }
 
-TEST_F(PeopleChange, APinIsSetAndRemovedAndNeverSent) {
+TEST_F(PeopleChange, SetsAndRemovesAPinWithoutSendingIt) {
   const auto anna = lab_.add_person("Anna");
   const std::string target = "/api/people/" + anna.id + "/pin";
   for (const char* bad : {"123", "12a4", "1234567890123"})
@@ -121,7 +121,7 @@ TEST_F(PeopleChange, APinIsSetAndRemovedAndNeverSent) {
   EXPECT_EQ(send("PUT", "/api/people/" + std::string(32, '0') + "/pin", {{"pin", "4711"}}).status, 404);
 }
 
-TEST_F(PeopleChange, OnlyAdminsMakePinsRequired) {
+TEST_F(PeopleChange, OnlyAdminsCanRequirePins) {
   EXPECT_EQ(json_of(lab_.get("/api/pins"))["required"], false);
   EXPECT_EQ(send("PUT", "/api/pins", {{"required", true}}).status, 403);
   lab_.cookie.clear();
@@ -132,7 +132,7 @@ TEST_F(PeopleChange, OnlyAdminsMakePinsRequired) {
   EXPECT_EQ(results::are_pins_required(lab_.repository()), true);
 }
 
-TEST_F(PeopleChange, NotesHaveAnAuthorATimeAndARightToDelete) {
+TEST_F(PeopleChange, NotesHaveAnAuthorATimeAndDeleteRights) {
   const auto anna = lab_.add_person("Anna");
   const std::string attempt = lab_.add_attempt(anna, 50.0), target = "/api/attempts/" + attempt;
   EXPECT_EQ(json_of(lab_.get(target))["notes"], Json::array());
@@ -164,7 +164,7 @@ TEST_F(PeopleChange, NotesHaveAnAuthorATimeAndARightToDelete) {
   EXPECT_EQ(body_of(lab_.get("/api/export/notes.csv?course=nobody's")).find(attempt), std::string::npos);
 }
 
-TEST_F(PeopleChange, TheListSaysWhyAnAttemptDidNotPass) {
+TEST_F(PeopleChange, ListShowsWhyAnAttemptDidNotPass) {
   const auto anna = lab_.add_person("Anna");
   lab_.add_attempt(anna, 90.0);
   results::AttemptRecord record;
@@ -190,7 +190,7 @@ TEST_F(PeopleChange, TheListSaysWhyAnAttemptDidNotPass) {
   EXPECT_EQ(list[2]["not_scored"], nullptr);
 }
 
-TEST(Password, AnAdminResetsThatOfAnother) {
+TEST(Password, AdminResetsAnotherAccountsPassword) {
   ServiceLab lab;
   lab.log_in(kInstructor);
   const std::string cookie = std::exchange(lab.cookie, ""), csrf = std::exchange(lab.csrf, "");

@@ -46,7 +46,7 @@ TEST(TokenBuckets, NeverHoldMoreThanTheirCapacity) {
   EXPECT_EQ(taken, 2);
 }
 
-TEST(TokenBuckets, ATimeInThePastGivesNothing) {
+TEST(TokenBuckets, GrantNothingForATimeInThePast) {
   TokenBuckets buckets({1, 1});
   EXPECT_FALSE(buckets.try_take("a", kFirstTry));
   EXPECT_TRUE(buckets.try_take("a", kFirstTry - 100s));
@@ -54,7 +54,7 @@ TEST(TokenBuckets, ATimeInThePastGivesNothing) {
 }
 
 /// 1000 made-up keys with room for 10: all beyond share one bucket.
-TEST(TokenBuckets, MadeUpKeysNeitherGrowNorEscape) {
+TEST(TokenBuckets, ForgedKeysNeitherGrowNorEscapeTheTable) {
   TokenBuckets buckets({2, 0.001, 10});
   int taken = 0;
   for (int n = 0; n < 1000; ++n) taken += buckets.try_take(std::to_string(n), kFirstTry) ? 0 : 1;
@@ -85,7 +85,7 @@ TEST(LoginThrottle, SlowsDownOneClientAtOneAccount) {
   EXPECT_GE(guesses, 24 * 60 / 2);
 }
 
-TEST(LoginThrottle, NobodyElseIsLockedOut) {
+TEST(LoginThrottle, DoesNotLockOutOthers) {
   LoginThrottle throttle;
   tries(throttle, {"weber", "192.0.2.1"}, kFirstTry);
   EXPECT_FALSE(throttle.try_begin({"weber", "198.51.100.2"}, kFirstTry)) << "the owner of the account, elsewhere";
@@ -93,7 +93,7 @@ TEST(LoginThrottle, NobodyElseIsLockedOut) {
 }
 
 /// Tries that are refused take nothing from colleagues behind the same address.
-TEST(LoginThrottle, ARefusedTryCountsForNothing) {
+TEST(LoginThrottle, DoesNotCountRefusedTries) {
   LoginThrottle throttle;
   EXPECT_EQ(tries(throttle, {"weber", "192.0.2.1"}, kFirstTry), 5);
   for (int n = 0; n < 1000; ++n) EXPECT_TRUE(throttle.try_begin({"weber", "192.0.2.1"}, kFirstTry));
@@ -123,7 +123,7 @@ TEST(LoginThrottle, ManyClientsCannotTryOneAccount) {
 }
 
 /// All addresses of one customer: their tries leave the owner of the account a place.
-TEST(LoginThrottle, OneNetworkCannotTakeAllTriesAtAnAccount) {
+TEST(LoginThrottle, OneNetworkCannotExhaustTheTriesOfAnAccount) {
   LoginThrottle throttle;
   int count = 0;
   for (int n = 0; n < 60'000; ++n)
@@ -197,7 +197,7 @@ TEST(HostHeader, NamesOfOtherMachinesAreRefused) {
                                [](const std::string& host) { return host == "trainer.example"; }));
 }
 
-TEST(Origin, OfAnotherSiteIsSeen) {
+TEST(Origin, OfAnotherSiteIsDetected) {
   const auto is_foreign = [](TextPairs headers) {
     headers.emplace_back("Host", "localhost:8080");
     return is_from_another_site(request_with(std::move(headers)), "http");
@@ -214,14 +214,14 @@ TEST(Origin, OfAnotherSiteIsSeen) {
   EXPECT_TRUE(is_foreign({{"Origin", "http://localhost:8080"}, {"Origin", "http://localhost:8080"}}));
 }
 
-TEST(Cookie, IsLockedAgainstScriptsAndOtherSites) {
+TEST(Cookie, IsHttpOnlyAndSameSite) {
   const std::string plain = login_cookie(kToken, false), secure = login_cookie(kToken, true);
   EXPECT_EQ(plain, "trocar_session=" + kToken + "; Path=/; HttpOnly; SameSite=Strict");
   EXPECT_EQ(secure, "__Host-trocar_session=" + kToken + "; Path=/; HttpOnly; SameSite=Strict; Secure");
   EXPECT_NE(logout_cookie(true).find("Max-Age=0"), std::string::npos);
 }
 
-TEST(Cookie, TokenIsFoundAmongOthers) {
+TEST(Cookie, TokenIsFoundAmongOtherCookies) {
   EXPECT_EQ(find_session_token(request_with({{"Cookie", "a=b; trocar_session=" + kToken + "; c=d"}}), false), kToken);
   EXPECT_EQ(find_session_token(request_with({{"Cookie", "a=b"}, {"cookie", "trocar_session=" + kToken}}), false),
             kToken);
@@ -234,7 +234,7 @@ TEST(Cookie, TokenIsFoundAmongOthers) {
     EXPECT_FALSE(find_session_token(request_with({{"Cookie", "trocar_session=" + bad}}), false)) << bad;
 }
 
-TEST(Session, EndsByIdlenessAgeAndAClockThatIsSetBack) {
+TEST(Session, ExpiresByIdlenessAgeAndAClockSetBack) {
   const std::chrono::sys_seconds begun{std::chrono::seconds(1'700'000'000)};
   EXPECT_TRUE(is_session_valid(begun, begun, begun));
   EXPECT_TRUE(is_session_valid(begun, begun, begun + 29min + 59s));
@@ -255,7 +255,7 @@ TEST(LogText, CannotForgeALine) {
   EXPECT_LT(log_text(std::string(10000, 'x')).size(), 70U);
 }
 
-TEST(SecurityHeaders, AllowNothingFromElsewhere) {
+TEST(SecurityHeaders, AllowNoForeignOrigins) {
   std::string policy;
   for (const auto& [name, value] : security_headers(false)) {
     if (name == "Content-Security-Policy") policy = value;

@@ -128,7 +128,7 @@ class MovingPatient : public ::testing::TestWithParam<ForceModel> {
 
 /// Held at another place, a patient feels as it does at rest. With the proxy model a change of 1e-13 mm grows to 2e-3 N
 /// at a border of the CT, also at rest, and may shift it by a tick.
-TEST_P(MovingPatient, FeelsTheSameAtAnotherPlace) {
+TEST_P(MovingPatient, ForceIsInvariantToTheHeldPosition) {
   const motion::MotionModel::Scalars drivers{0.4, -0.7, 0.25};
   const Vec3 moved = kUnit_mm * Vec3(0.4, -0.7, 0.25);
   MovingLab rest(scene_, nullptr, {}), away(scene_, whole_body(), [&](double) { return held(drivers); });
@@ -147,7 +147,7 @@ TEST_P(MovingPatient, FeelsTheSameAtAnotherPlace) {
 }
 
 /// A hand that moves with the patient feels what it feels at a patient at rest.
-TEST_P(MovingPatient, FeelsTheSameToAHandThatMovesAlong) {
+TEST_P(MovingPatient, ForceIsInvariantForAHandMovingAlong) {
   const Vec3 velocity(8.0, -5.0, 3.0);
   MovingLab rest(scene_, nullptr, {}), moving(scene_, whole_body(), [&](double t) { return drifting(velocity, t); });
   double worst_n = 0.0, most_n = 0.0;
@@ -201,7 +201,7 @@ TEST_P(MovingPatient, IsCoupledInTheRoom) {
 }
 
 /// Distances to the skin are those in the room, however much the tissue is compressed or stretched.
-TEST(MovingPatientSkin, IsAsFarAsInTheRoom) {
+TEST(MovingPatientSkin, DistanceIsMeasuredInTheRoom) {
   const auto scene = make_scene(liver_way());
   const auto model = stretched({0.0, 0.0, -50.0});
   for (const double share : {1.5, 1.0, -1.0}) {
@@ -319,7 +319,7 @@ TEST(MovingPatientConstraint, HoldsTheNeedleToTheLineFromSkinToTip) {
 }
 
 /// A transducer on skin that rises under it presses like one that is pushed onto skin at rest.
-TEST(MovingPatientContact, PressesAsIfTheToolHadMoved) {
+TEST(MovingPatientContact, PatientMotionPressesLikeToolMotion) {
   const auto scene = make_face_scene(haptics::Tool::kTransducer, all_fat);
   constexpr double kSpeed_mm_per_s = 10.0;
   MovingLab rest(scene, nullptr, {});
@@ -356,7 +356,7 @@ TEST(MovingPatientContact, DragsATransducerAtRest) {
 }
 
 /// What lies below the skin is found where it is now: a rib that slid away from under the tool is not felt.
-TEST(MovingPatientContact, FeelsTheBoneWhereItIsNow) {
+TEST(MovingPatientContact, RendersBoneAtItsCurrentPosition) {
   const auto rib = [](const Vec3& p) { return std::abs(p.x()) < 8.0 && p.z() > 6.0 ? kBone : kFat; };
   const auto scene = make_face_scene(haptics::Tool::kFinger, rib);
   MotionParts parts;

@@ -22,13 +22,13 @@ double factor(double diameter_mm, double bevel_deg = 20.0) {
   return haptics::needle_size_factor(kLaw, 0.0, needle(diameter_mm, bevel_deg));
 }
 
-TEST(NeedleSize, IsOneForTheTablesNeedleAndWithoutALaw) {
+TEST(NeedleSize, IsOneForTheReferenceNeedleAndWithoutALaw) {
   EXPECT_DOUBLE_EQ(factor(1.27), 1.0);
   EXPECT_EQ(haptics::needle_size_factor({}, 0.0, needle(0.7)), 1.0);
   EXPECT_DOUBLE_EQ(haptics::needle_size_factor(kLaw, 0.718, needle(0.718)), 1.0);  // a layer's own needle
 }
 
-TEST(NeedleSize, IsBetweenProportionalToTheDiameterAndToItsSquare) {
+TEST(NeedleSize, GrowsBetweenLinearlyAndQuadratically) {
   // A sharp punch's pressure falls as its diameter grows (Shergold, Fleck 2005), its force grows.
   double before = 0.0;
   double pressure = std::numeric_limits<double>::infinity();
@@ -43,13 +43,13 @@ TEST(NeedleSize, IsBetweenProportionalToTheDiameterAndToItsSquare) {
   EXPECT_NEAR(factor(1e6) / 1e12, 18.0 / 79.0 / (1.27 * 1.27), 1e-6);
 }
 
-TEST(NeedleSize, FineNeedlesNeedThePublishedForceOfTheSkin) {
+TEST(NeedleSize, FineNeedlesMatchThePublishedSkinForce) {
   // 0.48-1.00 N for human abdominal skin and fine suture needles, more the thicker (Maloney, references.md).
   EXPECT_NEAR(2.8 * factor(0.27), 0.48, 0.03);
   EXPECT_NEAR(2.8 * factor(0.53), 1.00, 0.03);
 }
 
-TEST(NeedleSize, HardlyDependsOnTheBevelOverThePublishedRange) {
+TEST(NeedleSize, VariesLittleWithTheBevelAngle) {
   // 15 to 60 degrees: "the insertion force does not vary too much" (PMID 32791488).
   for (const double bevel_deg : {15.0, 30.0, 45.0, 60.0}) EXPECT_NEAR(factor(1.27, bevel_deg), 1.0, 0.05) << bevel_deg;
   EXPECT_GT(factor(1.27, 70.0), 1.1);                 // towards a blunt tip

@@ -17,7 +17,7 @@ anatomy::TissueTable smooth_tissues() {
   return table;
 }
 
-TEST(Resistance, DoesNotFallBeforeALayerBehindTissueThatIsCut) {
+TEST(Resistance, DoesNotDropBeforeALayerBehindCutTissue) {
   // A tissue with 1 N of cutting in front of the capsule, as the ligament in front of the ligamentum flavum.
   anatomy::TissueTable tissues = smooth_tissues();
   tissues.tissues[*tissues.find_tissue("muscle")].cutting_n = 1.0;
@@ -39,7 +39,7 @@ TEST(Resistance, DoesNotFallBeforeALayerBehindTissueThatIsCut) {
   }
 }
 
-TEST(Resistance, OfASteadyNeedleIsTheSameAtAnyRate) {
+TEST(Resistance, OfASteadyNeedleIsIndependentOfTheTickRate) {
   for (const haptics::ForceModel model : kModels) {
     std::vector<double> steady_n;
     for (const double rate_hz : {1000.0, 2000.0, 4000.0}) {
@@ -52,7 +52,7 @@ TEST(Resistance, OfASteadyNeedleIsTheSameAtAnyRate) {
   }
 }
 
-TEST(Resistance, AnInsertionAndWithdrawalDissipatesAtEveryDepth) {
+TEST(Resistance, DissipatesEnergyAtEveryDepth) {
   for (const haptics::ForceModel model : kModels) {
     Driver driver(make_scene(liver_way(), model, smooth_tissues()));
     driver.move(-1.0, 10.0);
@@ -83,7 +83,7 @@ TEST(Resistance, AnInsertionAndWithdrawalDissipatesAtEveryDepth) {
   }
 }
 
-TEST(Resistance, OfTheCombinedModelDoesNotDependOnLabelsThatTheCtShows) {
+TEST(Resistance, OfTheCombinedModelIgnoresLabelsShownByTheCt) {
   auto partly = layered_patient(liver_way());
   for (std::uint8_t& label : partly->labels.voxels)
     if (label != kLiver) label = 0;

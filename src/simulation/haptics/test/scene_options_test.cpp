@@ -7,7 +7,7 @@
 namespace trocar::haptics {
 namespace {
 
-TEST(SceneOptions, ReadBackToTheSameValues) {
+TEST(SceneOptions, RoundTrip) {
   HapticScene scene;
   scene.options.force_model = ForceModel::kCombined;
   scene.options.coupling = {0.1 + 0.2, 1.0 / 3.0};
@@ -29,7 +29,7 @@ TEST(SceneOptions, ReadBackToTheSameValues) {
   EXPECT_EQ(option_texts(scene), texts);
 }
 
-TEST(SceneOptions, RefuseWhatTheyDoNotKnow) {
+TEST(SceneOptions, RefuseUnknownKeysAndBadValues) {
   for (const char* bad : {"coupling.stiffness", "coupling.stiffness=", "coupling.stiffness=nan", "bending=yes",
                           "device.peak_force=1e999", "colour=1", "force_model=magic", ""}) {
     HapticOptions options;
@@ -41,7 +41,7 @@ TEST(SceneOptions, RefuseWhatTheyDoNotKnow) {
   }
 }
 
-TEST(HapticScene, HasThePathConstraintOfATableThatWasFittedToThePatient) {
+TEST(HapticScene, UsesThePathConstraintOfAFittedTable) {
   const auto patient = testing::layered_patient(testing::liver_way());
   anatomy::TissueTable tissues = testing::paper_tissues();
   const auto of_program = make_haptic_scene(patient, tissues, {}, {}, {});
@@ -63,7 +63,7 @@ TEST(HapticScene, HasThePathConstraintOfATableThatWasFittedToThePatient) {
   EXPECT_EQ((*limited)->options.constraint.torque_nmm, 0.0);
 }
 
-TEST(HapticScene, LabelsOfUnknownTissuesCountAsSoftTissueAndAreAllNamed) {
+TEST(HapticScene, TreatsUnknownTissuesAsSoftTissueWithAWarning) {
   auto patient = testing::layered_patient(testing::liver_way());
   patient->label_table.labels[0].tissue = "blubber";
   patient->label_table.labels[3].tissue = "horn";

@@ -32,7 +32,7 @@ TEST(Tick, NeverAllocates) {
   EXPECT_EQ(state.needle.path.memory.channels[0].is_used, true);
 }
 
-TEST(AllocationGuard, SeesAnAllocation) {
+TEST(AllocationGuard, CountsAnAllocation) {
   const AllocationGuard guard;
   auto owned = std::make_unique<int>(3);
   EXPECT_GT(guard.count(), 0u);
@@ -70,7 +70,7 @@ TEST(Tick, ComposesTheTotalFromAllItsParts) {
 }
 
 /// Nothing touches a needle in the air: the stylus' weight is all there is, also on a device without torque.
-TEST(Tick, KeepsTheWeightApartFromTheTissue) {
+TEST(Tick, SeparatesWeightFromTissueForce) {
   for (const double peak_torque_nmm : {515.0, 0.0}) {
     haptics::DeviceCapability device;
     device.peak_torque_nmm = peak_torque_nmm;
@@ -88,7 +88,7 @@ TEST(Tick, KeepsTheWeightApartFromTheTissue) {
 }
 
 /// A tip that stops on the skin to within rounding has met it when it goes on.
-TEST(Tick, MeetsTheSkinAfterAStopOnIt) {
+TEST(Tick, TouchesTheSkinAfterStoppingOnIt) {
   for (const haptics::ForceModel model :
        {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
     for (const double stop_mm : {-1e-9, 0.0, 1e-14, 3e-14, 1e-13, 1e-12, 1e-9}) {
@@ -106,7 +106,7 @@ TEST(Tick, MeetsTheSkinAfterAStopOnIt) {
   }
 }
 
-TEST(Tick, GivesTheDeviceTheForceOfTheCoupling) {
+TEST(Tick, SendsTheCouplingForceToTheDevice) {
   // physics.md V1: along the path the device is pushed back by k_c (s_D - s) + b_c (v_D - v), which balances all
   // resistances. Here from the recorded places alone, without the recorded terms.
   const haptics::CouplingParams coupling;
@@ -140,14 +140,14 @@ TEST(Tick, CompensatesTheWeightUpwards) {
   EXPECT_EQ(Driver(make_scene(liver_way(), off)).to({0, 0, -10}).f_total_n.norm(), 0.0);
 }
 
-TEST(Tick, ClampsToTheDeviceAndSaysSo) {
+TEST(Tick, ClampsToTheDeviceAndFlagsIt) {
   Driver driver(make_scene({{0, kFat}, {10, kBone}}));
   const telemetry::TickSample sample = driver.move(80.0, 50.0).back();
   EXPECT_NEAR(sample.device_f_n.norm(), 37.5, 1e-9);
   EXPECT_TRUE(sample.limited);
 }
 
-TEST(Tick, StaysFiniteWhateverComesIn) {
+TEST(Tick, StaysFiniteForAnyInput) {
   const auto scene = make_scene(liver_way());
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -234,7 +234,7 @@ TEST(Tick, GivesNoForceForAnAbsurdlySmallPeriod) {
   }
 }
 
-TEST(Tick, ReplaysToTheSameBits) {
+TEST(Tick, ReplaysBitwise) {
   const auto scene = make_scene(liver_way());
   const auto run = [&] {
     haptics::HapticState state;

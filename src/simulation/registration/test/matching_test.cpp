@@ -56,7 +56,7 @@ TEST(Nearest, IsExactInBothDirections) {
   expect_exact(b, a, owners_a, nearest.of_b);
 }
 
-TEST(Nearest, IsTheSameOnEveryInstructionSetAndNumberOfThreads) {
+TEST(Nearest, IsIndependentOfInstructionSetAndThreads) {
   const auto a = random_descriptors(300, 3), b = random_descriptors(70, 4);
   const auto owners_a = owners_in_twos(a.size()), owners_b = owners_in_twos(b.size());
   const auto best = trocar::registration::detail::find_nearest(a, owners_a, b, owners_b);

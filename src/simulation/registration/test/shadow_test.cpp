@@ -20,7 +20,7 @@ HeaderFields fan_header() {
           {"trocar_sweep_radius_mm", "22"}};
 }
 
-TEST(Beams, FanMapsThereAndBack) {
+TEST(Beams, FanMappingIsInvertible) {
   const Beams beams = *Beams::from_header(fan_header(), cube(41));
   for (const Vec3& p : {Vec3(20, 10, 20), Vec3(12, 30, 26), Vec3(29, 22, 12)}) {
     EXPECT_LT((beams.to_point(beams.to_place(p)) - p).norm(), 1e-9);
@@ -31,7 +31,7 @@ TEST(Beams, FanMapsThereAndBack) {
   EXPECT_NEAR(beams.to_place(Vec3(20, 0, 20)).depth_mm, 0.0, 1e-12);
 }
 
-TEST(Beams, RefusesWhatIsNoDirectionAndDamagedHeaders) {
+TEST(Beams, RefusesInvalidDirectionsAndHeaders) {
   for (const char* axis : {"", "y", "+w", "++y", "-"}) {
     const auto beams = Beams::along_axis(axis, cube(4));
     ASSERT_FALSE(beams) << axis;
@@ -61,7 +61,7 @@ volume::LabelGrid shadowed_cube() {
   return gray;
 }
 
-TEST(ShadowMask, EndsAtTheFirstEchoFromBelow) {
+TEST(ShadowMask, StartsAfterTheLastEchoOfABeam) {
   const volume::LabelGrid gray = shadowed_cube();
   const ImagedRegion region = *find_shadows(gray, *Beams::along_axis("+z", gray.geometry), 40.0);
   EXPECT_EQ(region.usable[(volume::Index3{12, 12, 31})], 0);

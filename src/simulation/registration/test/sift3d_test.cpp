@@ -73,7 +73,7 @@ const Keypoint* nearest(const std::vector<Keypoint>& keypoints, const Vec3& p) {
   return best;
 }
 
-TEST(Keypoints, FindABlobAtItsPlaceAndScale) {
+TEST(Keypoints, FindABlobAtItsPositionAndScale) {
   for (const double width_mm : {3.5, 5.0, 7.0}) {
     const Vec3 place(1.3, -2.6, 0.4);
     const auto grid = render({{{place, width_mm, 10.0}}}, Pose());

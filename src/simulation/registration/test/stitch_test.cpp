@@ -27,7 +27,7 @@ TargetError error_between(const std::vector<GeneratedVolume>& series, const Stit
                       stitching.X_0N[a]->inverse() * *stitching.X_0N[b]);
 }
 
-TEST(Stitch, PlacesHalfOverlappingVolumesWithSpeckleAndShadowsOfTheirOwn) {
+TEST(Stitch, AlignsHalfOverlappingVolumesDespiteSpeckle) {
   for (const bool is_varied : {false, true}) {
     SeriesOptions options;
     options.volumes = 3;
@@ -139,7 +139,7 @@ TEST(PoseGraph, LeavesUnconnectedNodesWithoutAPose) {
   EXPECT_FALSE(graph.X_0N[3]);
 }
 
-TEST(Blend, KeepsASingleVolumeAndTheSpeckleOfTwo) {
+TEST(Blend, KeepsASingleVolumeAndPreservesSpeckle) {
   SeriesOptions options;
   options.volumes = 2;
   options.has_shadows = false;

@@ -43,7 +43,7 @@ TEST(TestScenes, OnlyDensityBoneAndGasReflect) {
   EXPECT_LT(reflected(TestTissue::kGas), -0.99);
 }
 
-TEST(TestScenes, ABoxHoldsTheWholeScanBehindTheSkin) {
+TEST(TestScenes, BoxContainsTheWholeScanBehindTheSkin) {
   const Transducer transducer = plain_convex();
   const ScenePtr scene = homogeneous_scene(box_for(transducer, 120.0, 2.0), TestTissue::kTissue);
   const ScanGeometry scan = make_scan_geometry(transducer, 120.0, 65, 64);
@@ -78,7 +78,7 @@ TEST(TestScenes, LayersEndAtTheirDepths) {
   EXPECT_EQ(tissue_number_at(*scene, {3, 26.5, 0}), index_of(TestTissue::kGas));
 }
 
-TEST(TestScenes, RodsLieWhereTheyWereSet) {
+TEST(TestScenes, RodsLieAtTheirPositions) {
   const TestRod rods[] = {{-8.0, 30.0, 4.0, TestTissue::kWater}, {8.0, 30.0, 4.0, TestTissue::kBone, 2.0}};
   const ScenePtr scene = rods_scene(SceneBox{}, TestTissue::kTissue, rods, {{Vec3(0, 50, 0), 40.0}});
   EXPECT_EQ(tissue_number_at(*scene, {-8.5, 33.5, 9.5}), index_of(TestTissue::kWater));
@@ -87,7 +87,7 @@ TEST(TestScenes, RodsLieWhereTheyWereSet) {
   ASSERT_EQ(scene->points.size(), 1u);
 }
 
-TEST(TestScenes, APlaneMirrorsThingsBehindItself) {
+TEST(TestScenes, PlaneMirrorsObjectsBehindIt) {
   const TestPlane plane{40.0, 0.3};
   const TestRod rods[] = {{5.0, 20.0, 3.0, TestTissue::kPlus12}};
   const ScenePtr scene = plane_scene(SceneBox{}, TestTissue::kTissue, plane, rods);
@@ -106,7 +106,7 @@ TEST(TestScenes, AGapIsAirBetweenFaceAndSkin) {
   EXPECT_EQ(tissue_number_at(*scene, {6.5, 7.5, 0}), index_of(TestTissue::kTissue));
 }
 
-TEST(TestScenes, CellsAreMixedAtBordersAlone) {
+TEST(TestScenes, CellsAreMixedOnlyAtBorders) {
   const TestSlab slab{10.0, 20.0, 28.0, TestTissue::kBone};
   const ScenePtr scene = slab_scene(SceneBox{}, TestTissue::kTissue, slab);
   std::size_t mixed = 0;

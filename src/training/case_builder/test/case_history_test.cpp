@@ -51,7 +51,7 @@ std::vector<Edit> all_edits() {
   };
 }
 
-TEST(CaseHistory, AnySequenceUndoneGivesTheFirstDraftAndRedoneTheLast) {
+TEST(CaseHistory, UndoAndRedoRestoreAnyEditSequence) {
   const CaseDraft first = made_draft();
   const std::vector<Edit> edits = all_edits();
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -86,7 +86,7 @@ TEST(CaseHistory, AnySequenceUndoneGivesTheFirstDraftAndRedoneTheLast) {
   }
 }
 
-TEST(CaseEdits, ALandmarkIsPlacedMovedAndRenamedUnderOneName) {
+TEST(CaseEdits, PlaceMoveAndRenameALandmark) {
   CaseDraft draft = made_draft();
   const std::size_t before = draft.landmarks.size();
   draft = *set_landmark(draft, "xiphoid process", {0.0, -90.0, 0.0});
@@ -104,7 +104,7 @@ TEST(CaseEdits, ALandmarkIsPlacedMovedAndRenamedUnderOneName) {
   EXPECT_EQ(draft.landmarks[before].name, "xiphisternal joint");
 }
 
-TEST(CaseEdits, NamesOfLandmarksDiffer) {
+TEST(CaseEdits, KeepLandmarkNamesUnique) {
   const auto names = landmark_names();
   EXPECT_EQ(std::set<std::string_view>(names.begin(), names.end()).size(), names.size());
 }
@@ -127,7 +127,7 @@ TEST(CaseHistory, KeepsABoundedNumberOfSteps) {
   EXPECT_EQ(undone, CaseHistory::kMaxSteps);
 }
 
-TEST(CaseHistory, AStepAfterUndoForgetsWhatWasUndone) {
+TEST(CaseHistory, StepAfterUndoClearsRedo) {
   CaseHistory history;
   history.begin(made_draft());
   history.apply(*set_target_label(history.draft(), "lesion"), "target");
@@ -137,7 +137,7 @@ TEST(CaseHistory, AStepAfterUndoForgetsWhatWasUndone) {
   EXPECT_EQ(history.undo_text(), "rename");
 }
 
-TEST(CaseEdits, RefuseWhatCannotBeInOneLine) {
+TEST(CaseEdits, RefuseImpossibleEditsInOneLine) {
   const CaseDraft draft = made_draft();
   EXPECT_FALSE(rename_label(draft, 3, "fat"));
   EXPECT_FALSE(rename_label(draft, 3, ""));
@@ -151,7 +151,7 @@ TEST(CaseEdits, RefuseWhatCannotBeInOneLine) {
   EXPECT_FALSE(set_target_point(CaseDraft{}, {0.0, 0.0, 0.0}));
 }
 
-TEST(CaseEdits, RenamedLabelIsFollowedByTargetAndRisks) {
+TEST(CaseEdits, RenamingALabelUpdatesTargetAndRisks) {
   CaseDraft draft = *set_target_label(made_draft(), "lesion");
   draft = *set_risk(draft, {"", "gallbladder", 4.0, false, {}});
   draft = *rename_label(draft, 4, "tumour");
@@ -160,7 +160,7 @@ TEST(CaseEdits, RenamedLabelIsFollowedByTargetAndRisks) {
   EXPECT_EQ(draft.task.risks.back().label, "bladder of gall");
 }
 
-TEST(CaseEdits, EntryZoneIsBroughtOntoTheSkin) {
+TEST(CaseEdits, ProjectTheEntryZoneOntoTheSkin) {
   const auto draft = set_entry_zone(made_draft(), {-92.0, 5.0, 3.0}, 15.0);
   ASSERT_TRUE(draft) << draft.error().text();
   EXPECT_NEAR(draft->task.entry_zone->centre_P.x(), -100.0, 0.5);

@@ -36,7 +36,7 @@ TEST(Checks, SoundDraftHasNoError) {
   EXPECT_NE(find(checks, CheckLevel::kOk, "the target is in lesion"), nullptr);
 }
 
-TEST(Checks, LabelsOutsideTheBodyAreNamedWithAPlace) {
+TEST(Checks, LocateLabelsOutsideTheBody) {
   CaseDraft draft = made_draft();
   auto imported = std::make_shared<ImportedPatient>(*draft.imported);
   volume::LabelGrid& labels = imported->patient.labels;
@@ -86,7 +86,7 @@ TEST(Checks, TargetThatIsARiskIsAnError) {
   EXPECT_NE(find(checks_of(draft), CheckLevel::kError, "is also a risk structure"), nullptr);
 }
 
-TEST(Checks, FaultsOfThePathAreNamedWithTheirPlace) {
+TEST(Checks, LocateFaultsOfThePath) {
   BoxPatient box;
   box.special = [](const Vec3& p) { return std::abs(p.x() + 85.0) < 3.0 && std::abs(p.z()) < 6.0 ? "bone" : ""; };
   CaseDraft draft = *set_expert_path(made_draft(box), good_path(shipped_needle()));

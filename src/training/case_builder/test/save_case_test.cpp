@@ -31,7 +31,7 @@ CaseDraft full_draft() {
   return draft;
 }
 
-TEST(SaveCase, WhatIsSavedIsOpenedTheSame) {
+TEST(SaveCase, RoundTripsADraft) {
   const TemporaryFolder folder;
   DraftPatient patients;
   const CaseDraft draft = full_draft();
@@ -47,7 +47,7 @@ TEST(SaveCase, WhatIsSavedIsOpenedTheSame) {
   EXPECT_EQ(opened->imported->patient.content_hash, anatomy::hash_patient(*patients.of(draft)));
 }
 
-TEST(SaveCase, SavedCaseIsReadyForAnAttemptWithItsOwnTask) {
+TEST(SaveCase, SavedCaseOpensForAnAttemptWithItsTask) {
   const TemporaryFolder folder;
   DraftPatient patients;
   const CaseDraft draft = full_draft();
@@ -110,7 +110,7 @@ TEST(SaveCase, KeepsThePatientsOwnTissueTable) {
   EXPECT_FALSE(import_case({(folder.path() / "again").string(), {}}));
 }
 
-TEST(SaveCase, NothingIsOverwrittenWithoutBeingTold) {
+TEST(SaveCase, OverwritesOnlyOnRequest) {
   const TemporaryFolder folder;
   DraftPatient patients;
   CaseDraft draft = full_draft();
@@ -131,7 +131,7 @@ TEST(SaveCase, NothingIsOverwrittenWithoutBeingTold) {
   EXPECT_TRUE(fs::exists(folder.path() / "mine" / "letter.txt"));
 }
 
-TEST(SaveCase, NothingToSaveIsSaid) {
+TEST(SaveCase, RefusesAnEmptyDraft) {
   DraftPatient patients;
   const TemporaryFolder folder;
   EXPECT_FALSE(save_case(CaseDraft{}, patients, {folder.path() / "case", false}));
@@ -173,7 +173,7 @@ TEST(ImportCase, BuildsACaseFromFiles) {
   EXPECT_LT((*target_P - BoxPatient{}.lesion_centre_P).norm(), 0.5);
 }
 
-TEST(ImportCase, ObeysAStop) {
+TEST(ImportCase, StopsOnRequest) {
   std::stop_source stop;
   stop.request_stop();
   const auto draft = import_case({"layers-liver", {}}, {}, stop.get_token());
@@ -181,7 +181,7 @@ TEST(ImportCase, ObeysAStop) {
   EXPECT_EQ(draft.error().what, "stopped");
 }
 
-TEST(ImportCase, WhatIsMissingIsSaidInOneLine) {
+TEST(ImportCase, ReportsMissingInputInOneLine) {
   for (const ImportRequest& request :
        {ImportRequest{}, ImportRequest{"/nowhere/ct.nii.gz", {"/nowhere/labels.nii.gz"}},
         ImportRequest{"/nowhere/ct.nii.gz", {}}, ImportRequest{"abdomen", {"/nowhere/labels.nii.gz"}}}) {
@@ -193,7 +193,7 @@ TEST(ImportCase, WhatIsMissingIsSaidInOneLine) {
   }
 }
 
-TEST(ImportCase, BrokenFilesGiveOneLineAndLeaveTheDraft) {
+TEST(ImportCase, FailsInOneLineAndKeepsTheDraft) {
   const fs::path data = test_data() / "bad-input";
   if (!fs::exists(data)) GTEST_SKIP() << "no real data at " << data;
   const CaseDraft before = made_draft();

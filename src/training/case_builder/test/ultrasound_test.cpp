@@ -64,7 +64,7 @@ double error_mm(const Pose& X_PU) {
                                          generated_pair().X_CU);
 }
 
-TEST(CaseUltrasound, LandmarkPairsPlaceItAndMutualInformationRefinesThePose) {
+TEST(CaseUltrasound, RegistersByLandmarksThenRefinesThePose) {
   const auto placed = place_by_landmarks(with_landmarks(pair_draft(), 7.0));
   ASSERT_TRUE(placed) << placed.error().text();
   ASSERT_TRUE(placed->placement);
@@ -76,7 +76,7 @@ TEST(CaseUltrasound, LandmarkPairsPlaceItAndMutualInformationRefinesThePose) {
   EXPECT_GE(refined->confidence, registration::kLeastConfidence);
 }
 
-TEST(CaseUltrasound, PoseNeedsAStartAndCanBeCancelled) {
+TEST(CaseUltrasound, RefinementNeedsAStartAndCanBeCancelled) {
   EXPECT_FALSE(find_placement(pair_draft(), RegistrationStart::kCurrent)) << "nothing to start from";
   EXPECT_FALSE(find_placement(CaseDraft{}, RegistrationStart::kHeader)) << "no ultrasound";
   std::stop_source source;
@@ -93,7 +93,7 @@ TEST(CaseUltrasound, UnrelatedVolumeIsRefused) {
   EXPECT_NE(found.error().text().find("no reliable registration"), std::string::npos) << found.error().text();
 }
 
-TEST(CaseUltrasound, EditsRefuseWhatIsNotPossible) {
+TEST(CaseUltrasound, RefusesImpossibleEdits) {
   CaseDraft draft = pair_draft();
   EXPECT_FALSE(set_ultrasound_landmark(CaseDraft{}, "a", Vec3::Zero())) << "no ultrasound";
   EXPECT_FALSE(set_ultrasound_landmark(draft, "", middle_of(*draft.ultrasound)));
@@ -108,7 +108,7 @@ TEST(CaseUltrasound, EditsRefuseWhatIsNotPossible) {
   EXPECT_NE(placed.error().text().find("place 2"), std::string::npos) << placed.error().text();
 }
 
-TEST(CaseUltrasound, RenamedLandmarkStaysPairedAndARemovedVolumeTakesItsPoseWithIt) {
+TEST(CaseUltrasound, KeepsPairsOnRenameAndDropsPoseWithTheVolume) {
   CaseDraft draft = with_landmarks(pair_draft(), 0.0);
   draft = *rename_landmark(draft, 0, "portal vein");
   EXPECT_EQ(draft.ultrasound_landmarks[0].name, "portal vein");
@@ -139,7 +139,7 @@ std::string checks_of_ultrasound(const CaseDraft& draft) {
   return text;
 }
 
-TEST(CaseUltrasound, ChecksSayWhatIsMissing) {
+TEST(CaseUltrasound, ChecksReportWhatIsMissing) {
   CaseDraft draft = box_draft();
   EXPECT_NE(checks_of_ultrasound(made_draft()).find("0no recorded ultrasound"), std::string::npos);
   EXPECT_NE(checks_of_ultrasound(draft).find("1the ultrasound is placed by landmarks only"), std::string::npos);
@@ -193,7 +193,7 @@ ultrasound::TrackedSequence parallel_sweep() {
   return sweep;
 }
 
-TEST(CaseUltrasound, ATrackedSweepBecomesAVolumeAndSaysSo) {
+TEST(CaseUltrasound, ReconstructsATrackedSweepWithAWarning) {
   const TemporaryFolder folder;
   const fs::path file = folder / "sweep.igs.mha";
   ASSERT_TRUE(io::write_sequence(parallel_sweep(), file));
@@ -210,7 +210,7 @@ TEST(CaseUltrasound, ATrackedSweepBecomesAVolumeAndSaysSo) {
   EXPECT_NE((*read)->warnings[0].find("reconstructed from 21 images"), std::string::npos) << (*read)->warnings[0];
 }
 
-TEST(CaseUltrasound, ASweepWithoutCalibrationIsRefusedWithTheCommandThatTakesOne) {
+TEST(CaseUltrasound, RefusesAnUncalibratedSweepWithAdvice) {
   const TemporaryFolder folder;
   const fs::path file = folder / "sweep.igs.mha";
   ultrasound::TrackedSequence sweep = parallel_sweep();

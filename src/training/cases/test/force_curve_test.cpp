@@ -48,7 +48,7 @@ TEST(ForceCurve, FindsTheLayersInOrderWithTheirDrops) {
   }
 }
 
-TEST(ForceCurve, GoesOnUntilTheTipHasArrived) {
+TEST(ForceCurve, ContinuesUntilTheTipArrives) {
   PrescribedMotion motion = straight_in();
   const auto shorter = force_curve(*weightless_scene(), motion);
   EXPECT_LT(shorter.back().tip_mm, 40.0);  // the coupling's spring is stretched by the force in the liver
@@ -60,7 +60,7 @@ TEST(ForceCurve, GoesOnUntilTheTipHasArrived) {
   for (std::size_t i = 0; i < shorter.size(); ++i) EXPECT_EQ(shorter[i].force_n, longer[i].force_n);
 }
 
-TEST(ForceCurve, ReadsPeakDropAndTimeOffAKnownCurve) {
+TEST(ForceCurve, MeasuresPeakDropAndTimeOfAKnownCurve) {
   // 4 N until the layer gives way, then 0.1 N less a tick down to 1 N, then a slow rise.
   std::vector<CurvePoint> curve;
   for (int i = 0; i < 400; ++i) {
@@ -80,7 +80,7 @@ TEST(ForceCurve, ReadsPeakDropAndTimeOffAKnownCurve) {
   EXPECT_NEAR(events[0].fall_ms, 27.0, 1.0 + 1e-6);
 }
 
-TEST(ForceCurve, HasNoDropWhereTheForceGoesOnRising) {
+TEST(ForceCurve, HasNoDropIfTheForceKeepsRising) {
   std::vector<CurvePoint> curve(50);
   for (std::size_t i = 0; i < curve.size(); ++i) curve[i].force_n = curve[i].time_s = kDt_s * static_cast<double>(i);
   curve[20].layer = 0;

@@ -35,7 +35,7 @@ std::set<std::string> names_of(const LaterData& later) {
   return names;
 }
 
-TEST(LaterData, BringsTheSceneAndEverySurfaceOneByOne) {
+TEST(LaterData, DeliversTheSceneAndEverySurface) {
   const auto patient = coarse();
   const LaterData later(patient, acoustics(), {"abdomen", 3});
   later.wait();
@@ -52,7 +52,7 @@ TEST(LaterData, BringsTheSceneAndEverySurfaceOneByOne) {
 }
 
 /// A task under fluoroscopy or palpation does not wait for an acoustic scene that it does not use.
-TEST(LaterData, MakesFirstWhatTheTaskNeeds) {
+TEST(LaterData, BuildsWhatTheTaskNeedsFirst) {
   const auto patient = coarse();
   const LaterData for_xray(patient, acoustics(), {"abdomen", 3}, LaterData::First::kSurfaces);
   while (!for_xray.acoustic()) std::this_thread::yield();
@@ -62,7 +62,7 @@ TEST(LaterData, MakesFirstWhatTheTaskNeeds) {
   EXPECT_TRUE(for_ultrasound.acoustic());
 }
 
-TEST(LaterData, KeepsSurfacesForTheNextTime) {
+TEST(LaterData, CachesSurfaces) {
   const TemporaryFolder folder;
   const auto patient = coarse();
   const io::PatientSource source{"abdomen", 3, folder / "patients"};
@@ -84,7 +84,7 @@ TEST(LaterData, KeepsSurfacesForTheNextTime) {
   EXPECT_EQ(names_of(second), names_of(first));
 }
 
-TEST(LaterData, CancelledKeepsNothingIncomplete) {
+TEST(LaterData, CancelledRunCachesNothingIncomplete) {
   const TemporaryFolder folder;
   const auto patient = coarse();
   const io::PatientSource source{"abdomen", 3, folder / "patients"};
@@ -99,7 +99,7 @@ TEST(LaterData, CancelledKeepsNothingIncomplete) {
   EXPECT_TRUE(meshes->empty() || meshes->size() == all) << meshes->size();
 }
 
-TEST(LaterData, SaysWhyAPictureIsMissing) {
+TEST(LaterData, ReportsWhyAnImageIsMissing) {
   ultrasound::AcousticTable none;
   const LaterData later(coarse(), std::move(none), {"abdomen", 3});
   later.wait();
@@ -109,7 +109,7 @@ TEST(LaterData, SaysWhyAPictureIsMissing) {
   EXPECT_FALSE(later.surfaces_after(0).empty());
 }
 
-TEST(LaterData, WithoutAThreadIsReadyWithoutPicturesAndTellsIt) {
+TEST(LaterData, ReportsAMissingThreadAndFinishesWithoutImages) {
   const testing::NoThreads none;
   const LaterData later(coarse(), acoustics(), {"abdomen", 3});
   later.wait();

@@ -11,7 +11,7 @@
 namespace trocar::cases {
 namespace {
 
-TEST(Level, IsKeptInTheTextFromWhichTheTaskIsMadeAgain) {
+TEST(Level, RoundTripsThroughTheTaskText) {
   CaseOptions options;
   options.task = "liver-biopsy";
   options.level = "hard";
@@ -31,7 +31,7 @@ TEST(Level, IsKeptInTheTextFromWhichTheTaskIsMadeAgain) {
   EXPECT_LT(made->task.target_tolerance_mm, plain->task.target_tolerance_mm);
 }
 
-TEST(CaseTables, RefuseAGunForATargetThatHasToBeProven) {
+TEST(CaseTables, RefuseABiopsyGunForAConfirmedTarget) {
   const TemporaryFolder folder;
   const std::string file = folder / "proof.toml";
   ASSERT_TRUE(write_file_atomically(file, "base = \"liver-biopsy\"\nconfirmed_by = \"bile\"\n"));
@@ -42,7 +42,7 @@ TEST(CaseTables, RefuseAGunForATargetThatHasToBeProven) {
   EXPECT_NE(made.error().text().find("takes cores"), std::string::npos) << made.error().text();
 }
 
-TEST(Level, ThatTheTaskLacksIsRefusedWithTheList) {
+TEST(Level, UnknownLevelListsTheLevels) {
   CaseOptions options;
   options.task = "ptcd";
   options.level = "impossible";
@@ -51,7 +51,7 @@ TEST(Level, ThatTheTaskLacksIsRefusedWithTheList) {
   EXPECT_NE(made.error().text().find("1 basic, 2 usual, 3 hard"), std::string::npos) << made.error().text();
 }
 
-TEST(Level, ChangesNumbersThatABodyHas) {
+TEST(Level, BodyFactorsNameValidParameters) {
   const auto all = tasks::load_tasks(data_dir() / "tasks");
   ASSERT_TRUE(all) << all.error().text();
   for (const tasks::Task& task : *all) {

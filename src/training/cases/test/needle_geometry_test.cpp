@@ -26,7 +26,7 @@ TEST(NeedleGeometryOfNeedle, HalvesDiametersAndTurnsDegreesIntoRadians) {
   EXPECT_DOUBLE_EQ(geometry.bevel_share, 0.25);
 }
 
-TEST(NeedleGeometryOfNeedle, EveryNeedleOfTheListIsATubeThatItsStyletFits) {
+TEST(NeedleGeometryOfNeedle, EveryListedNeedleIsATubeThatFitsItsStylet) {
   const auto needles = tasks::load_needles(data_dir() / "needles.toml");
   ASSERT_TRUE(needles) << needles.error().text();
   for (const tasks::Needle& needle : *needles) {

@@ -82,7 +82,7 @@ TEST(NeutralStart, KeepsAwayFromEveryPlan) {
   }
 }
 
-TEST(NeutralStart, TellsNothingOfAPlanThatIsFarAway) {
+TEST(NeutralStart, IsIndependentOfADistantPlan) {
   // From the flank the middle of the front is far enough: two different plans begin alike.
   const auto high = find_neutral_start(case_at(-0.9, 20.0), transducer(), Pose::translation({-120.0, -60.0, 60.0}));
   const auto low = find_neutral_start(case_at(-1.0, 20.0), transducer(), Pose::translation({-130.0, -50.0, 60.0}));
@@ -91,7 +91,7 @@ TEST(NeutralStart, TellsNothingOfAPlanThatIsFarAway) {
   EXPECT_LT((high->X_PT.p() - low->X_PT.p()).norm(), 1e-9);
 }
 
-TEST(NeutralStart, TakesTheSideOfTheEntry) {
+TEST(NeutralStart, UsesTheSideOfTheEntry) {
   Case the_case = case_at(0.0, 0.0);
   Segment& path_P = the_case.plan.line_P;
   path_P = {-path_P.a, -path_P.b};  // of one who lies on his belly
@@ -112,7 +112,7 @@ TEST(NeutralStart, StaysOutOfTheTasksEntryZone) {
   EXPECT_GE((start->X_PN * Vec3(0.0, 0.0, NeutralStart::kAbove_mm) - before_P).norm(), 50.0 - 1e-6);
 }
 
-TEST(NeutralStart, SaysWhereAPatientIsTooSmall) {
+TEST(NeutralStart, FallsBackToThePlanForASmallPatient) {
   Case the_case = case_at(0.0, 0.0);
   auto small = std::make_shared<anatomy::VirtualPatient>(*the_case.patient);
   for (float& distance : small->skin_distance_mm.voxels) distance += 70.0F;  // 30 mm and thinner

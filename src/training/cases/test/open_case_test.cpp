@@ -35,7 +35,7 @@ class OpenedCase : public ::testing::Test {
   static inline std::set<std::string> steps;
 };
 
-TEST_F(OpenedCase, HoldsAllThatIsShown) {
+TEST_F(OpenedCase, HoldsAllDisplayedData) {
   ASSERT_TRUE(opened);
   EXPECT_EQ(opened->the_case.task.name, "liver-biopsy");
   opened->later->wait();
@@ -48,7 +48,7 @@ TEST_F(OpenedCase, HoldsAllThatIsShown) {
   EXPECT_GT(steps.size(), 2u);
 }
 
-TEST_F(OpenedCase, PredictsThreeLayersThatGiveWay) {
+TEST_F(OpenedCase, PredictsThreePunctures) {
   const auto events = find_curve_events(opened->predicted, opened->the_case.tissues);
   ASSERT_EQ(events.size(), 3u);
   EXPECT_EQ(events[2].layer, "liver_capsule");
@@ -73,7 +73,7 @@ TEST_F(OpenedCase, PutsTheTransducerInPlaneBesideTheEntry) {
   EXPECT_GT(touching, 52);
 }
 
-TEST_F(OpenedCase, HasANeutralStartWithAPictureOfSomethingElse) {
+TEST_F(OpenedCase, NeutralStartShowsAnotherView) {
   const NeutralStart& start = opened->neutral;
   EXPECT_EQ(start.note, "");
   EXPECT_GT((start.X_PT.p() - opened->X_PT_start.p()).norm(), NeutralStart::kAway_mm);
@@ -87,7 +87,7 @@ TEST_F(OpenedCase, HasANeutralStartWithAPictureOfSomethingElse) {
   EXPECT_GT(touching, 52);
 }
 
-TEST_F(OpenedCase, LendsWhatIsTheSameToTheNextChoice) {
+TEST_F(OpenedCase, SharesUnchangedDataWithTheNextChoice) {
   CaseChoice other = opened->choice;
   other.options.overrides = {"skin.fp=5"};
   ASSERT_FALSE(other == opened->choice);
@@ -101,7 +101,7 @@ TEST_F(OpenedCase, LendsWhatIsTheSameToTheNextChoice) {
   EXPECT_GT(events.front().peak_n, find_curve_events(opened->predicted, opened->the_case.tissues).front().peak_n + 1.0);
 }
 
-TEST_F(OpenedCase, PredictsTheForceOfOtherNumbers) {
+TEST_F(OpenedCase, PredictsTheForceOfChangedTissues) {
   const auto stiffer = predict_force(opened->the_case, {"skin.fp=5"}, "");
   ASSERT_TRUE(stiffer) << stiffer.error().text();
   const auto events = find_curve_events(*stiffer, opened->the_case.tissues);
@@ -112,7 +112,7 @@ TEST_F(OpenedCase, PredictsTheForceOfOtherNumbers) {
   EXPECT_EQ(wrong.error().exit_status, 2);
 }
 
-TEST(OpenCase, SaysWhatIsWrongBeforeItOpensThePatient) {
+TEST(OpenCase, ReportsInvalidOptionsBeforeOpeningThePatient) {
   CaseChoice choice;
   choice.options.needle = "knitting";
   const auto wrong = make_open_case(choice);
@@ -125,7 +125,7 @@ TEST(OpenCase, SaysWhatIsWrongBeforeItOpensThePatient) {
   EXPECT_NE(nobody.error().text().find("abdomen"), std::string::npos);
 }
 
-TEST(OpenCase, KeepsAnEmbeddedPatientForTheNextTime) {
+TEST(OpenCase, CachesAnEmbeddedPatient) {
   const TemporaryFolder folder;
   OpenOptions options;
   options.cache_folder = folder / "patients";
@@ -152,7 +152,7 @@ TEST(OpenCase, KeepsAnEmbeddedPatientForTheNextTime) {
   EXPECT_NE((*other)->server_source, (*first)->server_source);
 }
 
-TEST(OpenCase, CancelledGivesNothing) {
+TEST(OpenCase, ReturnsNothingWhenCancelled) {
   CaseChoice choice;
   choice.patient_source = "layers-liver";
   auto job = open_case(choice);
@@ -182,7 +182,7 @@ bool is_cancelled_at(int n, const std::filesystem::path& cache_folder) {
   }
 }
 
-TEST(CancelledOpening, LeavesNothingHalfWrittenWheneverItHappens) {
+TEST(CancelledOpening, LeavesNoPartialFilesAtAnyPoint) {
   const TemporaryFolder folder;
   int cancelled = 0;
   for (int n = 1; is_cancelled_at(n, folder / std::to_string(n)); ++n) {

@@ -61,7 +61,7 @@ std::shared_ptr<const anatomy::VirtualPatient> partly_of(const anatomy::VirtualP
   return std::make_shared<const anatomy::VirtualPatient>(std::move(*partly));
 }
 
-TEST(SegmentationStudy, FeelsALabelThatIsGone) {
+TEST(SegmentationStudy, DetectsAMissingLabel) {
   const auto full = layered_patient(liver_way());
   const auto errors = compare_forces(*scene_of(full), *scene_of(partly_of(*full, Rest::kUnlabelled)), motions(4));
   const StudyFigures figures = study_figures(errors);
@@ -77,7 +77,7 @@ TEST(SegmentationStudy, FeelsALabelThatIsGone) {
   EXPECT_NE(places.front().place.find("muscle"), std::string::npos);
 }
 
-TEST(SegmentationStudy, FindsTheLayersOfARestThatTheBuildLabels) {
+TEST(SegmentationStudy, FindsLayersOfDerivedTissues) {
   const auto full = layered_patient(liver_way());
   const auto errors = compare_forces(*scene_of(full), *scene_of(partly_of(*full, Rest::kFound)), motions(4));
   const double unlabelled_n =
@@ -89,7 +89,7 @@ TEST(SegmentationStudy, FindsTheLayersOfARestThatTheBuildLabels) {
   }
 }
 
-TEST(SegmentationStudy, LeavesOutTheMomentAtWhichALayerGivesWayInBoth) {
+TEST(SegmentationStudy, ExcludesPuncturesCommonToBothScenes) {
   // A hundredth of a newton more: the capsule gives way a few ticks later.
   const auto patient = layered_patient(liver_way());
   const auto errors = compare_forces(*scene_of(patient), *scene_of(patient, 1.51), motions(4));
@@ -101,7 +101,7 @@ TEST(SegmentationStudy, LeavesOutTheMomentAtWhichALayerGivesWayInBoth) {
   }
 }
 
-TEST(SegmentationStudy, CountsALayerThatGivesWayElsewhere) {
+TEST(SegmentationStudy, CountsAPunctureAtAnotherDepth) {
   const auto patient = layered_patient(liver_way());
   for (const double capsule_n : {2.2, 0.8}) {
     for (const PathError& error : compare_forces(*scene_of(patient), *scene_of(patient, capsule_n), motions(4))) {
@@ -141,7 +141,7 @@ std::shared_ptr<const haptics::HapticScene> border_scene(double border_n) {
   return *scene;
 }
 
-TEST(SegmentationStudy, TakesABorderOfTheCtAsALayer) {
+TEST(SegmentationStudy, TreatsACtBorderAsALayer) {
   const auto full = border_scene(2.5);
   for (const PathError& error : compare_forces(*full, *border_scene(2.51), motions(4))) {
     EXPECT_GT(error.max_n, 0.1);  // one has lost the border's resistance, the other has not
@@ -157,7 +157,7 @@ TEST(SegmentationStudy, TakesABorderOfTheCtAsALayer) {
   }
 }
 
-TEST(SegmentationStudy, GivesTheSameFiguresAgain) {
+TEST(SegmentationStudy, IsDeterministic) {
   const auto full = scene_of(layered_patient(liver_way()));
   const auto other = scene_of(layered_patient({{0, kFat}, {20, kLiver}}));
   const auto first = compare_forces(*full, *other, motions(5));
@@ -177,7 +177,7 @@ TEST(PartlySegmented, KeepsOnlyTheNamedTissues) {
   EXPECT_EQ(partly->skin_distance_mm.voxels, full->skin_distance_mm.voxels);
 }
 
-TEST(PartlySegmented, FindsFatAndMuscleFromTheCtAsABuildDoes) {
+TEST(PartlySegmented, DerivesFatAndMuscleLikeABuild) {
   const auto full = layered_patient(liver_way());
   const auto partly = partly_of(*full, Rest::kFound);
   for (const double z : {5.0, 15.0, 30.0}) {
@@ -188,7 +188,7 @@ TEST(PartlySegmented, FindsFatAndMuscleFromTheCtAsABuildDoes) {
   EXPECT_FALSE(partly->label_table.find("liver")->is_derived);
 }
 
-TEST(SpreadChoice, TakesEachOnceFromAllOver) {
+TEST(SpreadChoice, SelectsUniqueItemsOverTheWholeRange) {
   for (const std::size_t available : {0UL, 1UL, 7UL, 1000UL, 1001UL}) {
     for (const std::size_t count : {1UL, 7UL, 100UL}) {
       const auto chosen = spread_choice(available, count, 3);
@@ -202,7 +202,7 @@ TEST(SpreadChoice, TakesEachOnceFromAllOver) {
   EXPECT_GE(spread_choice(1000, 10, 1).back(), 900U);
 }
 
-TEST(PrescribedMotion, RunsFromOutsideTheSkinToTheTargetAndItsDrift) {
+TEST(PrescribedMotion, RunsFromOutsideTheSkinToTheTargetWithDrift) {
   const auto scene = scene_of(layered_patient(liver_way()));
   PrescribedMotion motion;
   motion.line_P = {{1.0, 2.0, 0.0}, {1.0, 2.0, 40.0}};

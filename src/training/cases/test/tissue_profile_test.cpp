@@ -22,7 +22,7 @@ class Profiles : public ::testing::Test {
   const TissueProfile soft{"Soft liver, \"Ms. Ä\"", "fitted by hand", "combined", {"liver.mu=0.2", "skin.fp=4.5"}};
 };
 
-TEST_F(Profiles, ComeBackAsTheyWereSaved) {
+TEST_F(Profiles, RoundTrip) {
   ASSERT_TRUE(save_profile(soft, table, folder / "profiles", false));
   const ProfileList list = list_profiles(folder / "profiles");
   EXPECT_TRUE(list.problems.empty());
@@ -45,7 +45,7 @@ TEST_F(Profiles, KeepEveryCharacterOfANote) {
   EXPECT_EQ(loaded->note, odd.note);
 }
 
-TEST_F(Profiles, AreReplacedOnlyWhenThatIsMeant) {
+TEST_F(Profiles, AreReplacedOnlyOnRequest) {
   ASSERT_TRUE(save_profile(soft, table, folder.path(), false));
   TissueProfile other = soft;
   other.overrides = {"skin.fp=3"};
@@ -57,7 +57,7 @@ TEST_F(Profiles, AreReplacedOnlyWhenThatIsMeant) {
   EXPECT_EQ(load_profile(profile_file(folder.path(), soft.name))->overrides, other.overrides);
 }
 
-TEST_F(Profiles, AreDeletedWhereTheyWereLoadedFrom) {
+TEST_F(Profiles, AreDeletedFromTheirOwnFolder) {
   ASSERT_TRUE(save_profile(soft, table, folder.path(), false));
   std::filesystem::rename(profile_file(folder.path(), soft.name), folder / "mine.toml");
   const ProfileList list = list_profiles(folder.path());
@@ -71,7 +71,7 @@ TEST_F(Profiles, AreDeletedWhereTheyWereLoadedFrom) {
   EXPECT_FALSE(delete_profile(wrong));
 }
 
-TEST_F(Profiles, WithNumbersThatTheTableDoesNotTakeAreNotWritten) {
+TEST_F(Profiles, AreNotWrittenWithInvalidNumbers) {
   TissueProfile wrong = soft;
   wrong.overrides = {"liver.mu=700"};
   const Status status = save_profile(wrong, table, folder / "none", false);
@@ -92,7 +92,7 @@ TEST_F(Profiles, CannotLeaveTheirFolderOrBeNameless) {
   EXPECT_TRUE(folder.is_empty());
 }
 
-TEST_F(Profiles, ThatCannotBeReadAreNamed) {
+TEST_F(Profiles, AreNamedWhenUnreadable) {
   ASSERT_TRUE(save_profile(soft, table, folder.path(), false));
   std::ofstream(folder / "broken.toml") << "name = \"x\"\noverides = []\n";
   const ProfileList list = list_profiles(folder.path());

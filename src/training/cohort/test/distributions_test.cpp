@@ -8,14 +8,14 @@
 namespace trocar::cohort {
 namespace {
 
-TEST(Normal, HasItsTabledQuantiles) {
+TEST(Normal, MatchesTabulatedQuantiles) {
   EXPECT_NEAR(normal_quantile(0.975), 1.959963984540054, 1e-12);
   EXPECT_NEAR(normal_quantile(0.5), 0.0, 1e-12);
   EXPECT_NEAR(normal_quantile(0.025), -normal_quantile(0.975), 1e-12);
   EXPECT_NEAR(normal_below(-1.0), 0.158655253931457, 1e-14);
 }
 
-TEST(IncompleteBeta, HasItsClosedForms) {
+TEST(IncompleteBeta, MatchesClosedForms) {
   for (double x = 0.0; x <= 1.0; x += 0.0625) {
     EXPECT_NEAR(incomplete_beta(1.0, 1.0, x), x, 1e-13);
     EXPECT_NEAR(incomplete_beta(3.0, 1.0, x), x * x * x, 1e-13);
@@ -25,7 +25,7 @@ TEST(IncompleteBeta, HasItsClosedForms) {
   }
 }
 
-TEST(FQuantile, HasItsTabledAndClosedValues) {
+TEST(FQuantile, MatchesTabulatedAndClosedValues) {
   EXPECT_NEAR(f_quantile(0.95, 1.0, 11.0), 2.200985 * 2.200985, 1e-4);  // Student's t of 11 degrees of freedom
   EXPECT_NEAR(f_quantile(0.95, 5.0, 10.0), 3.3258, 1e-4);               // tables of the F distribution
   EXPECT_NEAR(f_quantile(0.5, 7.0, 7.0), 1.0, 1e-10);

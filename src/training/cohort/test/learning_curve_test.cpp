@@ -25,7 +25,7 @@ TEST(MovingMean, IsEmptyBeforeTheFirstScore) {
   EXPECT_TRUE(moving_mean({}, 3).empty());
 }
 
-TEST(Trend, IsTheSlopeOfALineWhateverOneOutlierDoes) {
+TEST(Trend, IsTheSlopeOfALineDespiteAnOutlier) {
   AttemptScores scores;
   for (int n = 0; n < 9; ++n) scores.emplace_back(40.0 + 3.0 * n);
   EXPECT_DOUBLE_EQ(*trend_per_attempt(scores), 3.0);
@@ -40,7 +40,7 @@ TEST(Trend, NeedsThreeScores) {
   EXPECT_EQ(trend_per_attempt(AttemptScores{5.0, 5.0, 5.0}), 0.0);
 }
 
-TEST(Cusum, HasThePublishedStepAndLimits) {
+TEST(Cusum, MatchesThePublishedStepAndLimits) {
   // 10 and 20 %, risks of 0.1, by hand: P = ln 2 = 0.6931, Q = ln 1.125 = 0.1178, ln 9 = 2.1972.
   const auto cusum = cusum_of({false, true, true}, {0.1, 0.2, 0.1, 0.1});
   ASSERT_TRUE(cusum);
@@ -54,7 +54,7 @@ TEST(Cusum, HasThePublishedStepAndLimits) {
   EXPECT_TRUE(cusum->signals.empty());
 }
 
-TEST(Cusum, DecidesAtALimitAndBeginsAnew) {
+TEST(Cusum, DecidesAtALimitAndRestarts) {
   // 20 and 40 %: s = 0.2933, limits ± 2.24: 4 failures (2.83) or 8 passes (-2.35) in a row decide.
   std::vector<bool> passed(4, false);
   passed.insert(passed.end(), 16, true);
@@ -85,7 +85,7 @@ double share_deciding(double failure_rate, Cusum::Decision decision) {
   return static_cast<double>(decided) / kPeople;
 }
 
-TEST(Cusum, KeepsWaldsRisks) {
+TEST(Cusum, MatchesWaldsErrorRisks) {
   // Wald 1945: the risks are at most alpha / (1 - beta) and beta / (1 - alpha), here 1/9; 3 standard errors are 0.017.
   EXPECT_LT(share_deciding(0.2, Cusum::Decision::kUnacceptable), 1.0 / 9.0 + 0.017);
   EXPECT_LT(share_deciding(0.4, Cusum::Decision::kAcceptable), 1.0 / 9.0 + 0.017);
@@ -104,7 +104,7 @@ TEST(Cusum, ExchangesItsSidesWithPassAndFail) {
   for (std::size_t n = 0; n < passed.size(); ++n) EXPECT_NEAR(a->values[n], -b->values[n], 1e-12) << n;
 }
 
-TEST(Cusum, RefusesRatesThatAreNone) {
+TEST(Cusum, RefusesInvalidRates) {
   for (const CusumRates& rates :
        {CusumRates{0.4, 0.2, 0.1, 0.1}, CusumRates{0.2, 0.2, 0.1, 0.1}, CusumRates{0.0, 0.2, 0.1, 0.1},
         CusumRates{0.2, 1.0, 0.1, 0.1}, CusumRates{0.2, 0.4, 0.5, 0.1}, CusumRates{0.2, 0.4, 0.1, kNan},
@@ -131,7 +131,7 @@ TEST(MeanCurve, CountsThePeopleOfEachAttempt) {
   EXPECT_TRUE(mean_curve({}).empty());
 }
 
-TEST(MeanCurve, HasStudentsInterval) {
+TEST(MeanCurve, UsesStudentsInterval) {
   const std::vector<AttemptScores> people{{10.0}, {30.0}};
   const auto curve = mean_curve(people);
   // Two values: t = 12.706, standard error 10.

@@ -22,7 +22,7 @@ std::string reason(const Scores& experts, const Scores& novices) {
   return mark ? "none" : mark.error().text();
 }
 
-TEST(PassMark, WithEqualSpreadIsHalfWayBetweenTheMeans) {
+TEST(PassMark, IsTheMidpointForEqualSpreads) {
   const auto mark = contrasting_groups(around(80.0, 10.0), around(40.0, 10.0));
   ASSERT_TRUE(mark);
   EXPECT_NEAR(mark->value, 60.0, 1e-9);
@@ -33,7 +33,7 @@ TEST(PassMark, WithEqualSpreadIsHalfWayBetweenTheMeans) {
   EXPECT_NEAR(mark->experts.sd, 10.0, 1e-12);
 }
 
-TEST(PassMark, OfTwoIntersectionsIsTheOneBetweenTheMeans) {
+TEST(PassMark, IsTheIntersectionBetweenTheMeans) {
   // By hand: N(0, 1) and N(3, 2): x² - (x - 3)²/4 = 2 ln 2, 3x² + 6x - 9 - 8 ln 2 = 0, x = -1 ± sqrt(4 + 8/3 ln 2).
   const auto mark = contrasting_groups(around(3.0, 2.0), around(0.0, 1.0));
   ASSERT_TRUE(mark);
@@ -48,7 +48,7 @@ TEST(PassMark, IsMirroredWithItsGroups) {
   EXPECT_NEAR(mark->expected_false_pass, mirrored->expected_false_fail, 1e-9);
 }
 
-TEST(PassMark, FollowsAChangeOfTheScale) {
+TEST(PassMark, ScalesWithTheScores) {
   const Scores experts{88.0, 91.0, 70.0}, novices{20.0, 55.0, 60.0, 41.0};
   Scores scaled_experts, scaled_novices;
   for (const double score : experts) scaled_experts.push_back(2.0 * score - 30.0);
@@ -57,7 +57,7 @@ TEST(PassMark, FollowsAChangeOfTheScale) {
               2.0 * contrasting_groups(experts, novices)->value - 30.0, 1e-9);
 }
 
-TEST(PassMark, CountsThoseOnTheWrongSide) {
+TEST(PassMark, CountsMisclassifiedPeople) {
   // Means 80 and 40, equal spread: the mark is 60.
   const auto mark = contrasting_groups(Scores{58.0, 80.0, 102.0}, Scores{18.0, 40.0, 62.0});
   ASSERT_TRUE(mark);

@@ -24,7 +24,7 @@ Rows parallel_items(std::size_t people, std::size_t items, double noise, std::ui
   return rows;
 }
 
-TEST(CronbachAlpha, ByHand) {
+TEST(CronbachAlpha, MatchesAManualCalculation) {
   // Variances of the items 0.7, 0.8, 0.7, of the totals 10 9 13 8 12: 4.3. 3/2 (1 - 2.2 / 4.3) = 0.7326.
   const auto alpha = cronbach_alpha(Rows{{3, 4, 3}, {2, 3, 4}, {4, 4, 5}, {3, 2, 3}, {4, 4, 4}});
   ASSERT_TRUE(alpha);
@@ -33,7 +33,7 @@ TEST(CronbachAlpha, ByHand) {
   EXPECT_EQ(alpha->people, 5u);
 }
 
-TEST(CronbachAlpha, OfParallelItemsIsSpearmanBrowns) {
+TEST(CronbachAlpha, MatchesSpearmanBrownForParallelItems) {
   // Reliability of an item 1 / (1 + noise²) = 0.5; of k items k / (k + 1). 4000 people: standard error about 0.01.
   for (const std::size_t items : {2u, 4u, 10u}) {
     const double k = static_cast<double>(items);
@@ -41,7 +41,7 @@ TEST(CronbachAlpha, OfParallelItemsIsSpearmanBrowns) {
   }
 }
 
-TEST(CronbachAlpha, HasItsLimits) {
+TEST(CronbachAlpha, ReachesItsLimits) {
   EXPECT_NEAR(cronbach_alpha(parallel_items(20, 4, 0.0, 1))->value, 1.0, 1e-12);
   const auto unrelated = cronbach_alpha(parallel_items(4000, 4, 1e6, 2));
   EXPECT_NEAR(unrelated->value, 0.0, 0.08);
@@ -49,7 +49,7 @@ TEST(CronbachAlpha, HasItsLimits) {
   EXPECT_NEAR(cronbach_alpha(Rows{{1, 0}, {3, -1}, {1, 2}})->value, 2.0 * (1.0 - (4.0 / 3.0 + 7.0 / 3.0) / 1.0), 1e-12);
 }
 
-TEST(CronbachAlpha, DoesNotDependOnUnitOriginOrOrder) {
+TEST(CronbachAlpha, IsInvariantToUnitOriginAndOrder) {
   const Rows rows = parallel_items(12, 5, 0.8, 7);
   Rows changed = rows;
   for (std::vector<double>& row : changed) {
@@ -76,7 +76,7 @@ Rows rows_with_alpha(double wanted, std::size_t people, std::size_t items) {
   return {};
 }
 
-TEST(FeldtInterval, HasThePublishedLimits) {
+TEST(FeldtInterval, MatchesPublishedLimits) {
   const auto check = [](double alpha, std::size_t people, std::size_t items, double low, double high) {
     const auto found = cronbach_alpha(rows_with_alpha(alpha, people, items));
     ASSERT_TRUE(found);

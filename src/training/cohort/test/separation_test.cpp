@@ -38,7 +38,7 @@ TEST(RankSum, HasThePublishedApproximatePWithTies) {
   EXPECT_NEAR(rank_sum_test(x, larger)->p, 2.0 / 8008.0, 1e-12) << "C(16, 6) choices";
 }
 
-TEST(RankSum, CountsTiesExactlyByHand) {
+TEST(RankSum, MatchesAManualCalculationWithTies) {
   // Values 1 1 2 2 over groups of 2: of the 6 choices, 1 has the sum of 2 2, 1 that of 1 1, 4 the mean.
   EXPECT_NEAR(rank_sum_test(Values{2, 2}, Values{1, 1})->p, 2.0 / 6.0, 1e-12);
   EXPECT_NEAR(rank_sum_test(Values{1, 2}, Values{1, 2})->p, 1.0, 1e-12);
@@ -46,7 +46,7 @@ TEST(RankSum, CountsTiesExactlyByHand) {
   EXPECT_NEAR(rank_sum_test(Values{1}, Values{0, 0, 0})->p, 0.25, 1e-12);
 }
 
-TEST(RankSum, IsTheSameWithExchangedGroupsAndMonotoneValues) {
+TEST(RankSum, IsInvariantToGroupOrderAndMonotoneMaps) {
   Random random(3);
   for (int round = 0; round < 40; ++round) {
     Values a, b, exp_a, exp_b;
@@ -71,12 +71,12 @@ TEST(RankSum, ApproximatesTheExactPInLargeGroups) {
   }
 }
 
-TEST(RankSum, EqualValuesProveNothing) {
+TEST(RankSum, FindsNoDifferenceInEqualValues) {
   EXPECT_EQ(rank_sum_test(Values(3, 7.0), Values(5, 7.0))->p, 1.0);
   EXPECT_EQ(rank_sum_test(Values(3, 7.0), Values(5, 7.0), 0)->p, 1.0);
 }
 
-TEST(RankSum, SmallestPIsThatOfCompleteSeparation) {
+TEST(RankSum, CompleteSeparationGivesTheSmallestP) {
   for (const auto& [n1, n2] : {std::pair{2u, 12u}, std::pair{1u, 12u}, std::pair{5u, 7u}}) {
     Values a, b;
     for (unsigned n = 0; n < n1; ++n) a.push_back(100.0 + n);
@@ -87,7 +87,7 @@ TEST(RankSum, SmallestPIsThatOfCompleteSeparation) {
   EXPECT_EQ(smallest_rank_sum_p(1, 1), 1.0);
 }
 
-TEST(RankSum, RefusesWhatIsNoNumberAndEmptyGroups) {
+TEST(RankSum, RefusesNonFiniteValuesAndEmptyGroups) {
   EXPECT_FALSE(rank_sum_test({}, Values{1.0}));
   EXPECT_FALSE(rank_sum_test(Values{1.0}, {}));
   EXPECT_FALSE(rank_sum_test(Values{1.0}, Values{2.0, std::numeric_limits<double>::quiet_NaN()}));
@@ -107,7 +107,7 @@ TEST(Separation, AreaIsTheShareOfPairs) {
   EXPECT_DOUBLE_EQ(separation_of(Values{5.0}, Values{5.0}, Better::kLower)->auc, 0.5);
 }
 
-TEST(Separation, NormalGroupsHaveTheAreaOfTheory) {
+TEST(Separation, AreaMatchesTheoryForNormalGroups) {
   // Means one standard deviation apart: Phi(1 / sqrt 2) = 0.7602; the standard error of 500 + 500 people is 0.015.
   Random random(11);
   Values experts, novices;
@@ -118,7 +118,7 @@ TEST(Separation, NormalGroupsHaveTheAreaOfTheory) {
   EXPECT_NEAR(separation_of(experts, novices, Better::kHigher)->auc, 0.7602, 0.045);
 }
 
-TEST(AucInterval, ItsLimitsAreTheAreasWithHanleyAndMcNeilsVariance) {
+TEST(AucInterval, LimitsMatchHanleyAndMcNeilsVariance) {
   // Newcombe's variance is Hanley and McNeil's for groups of one size.
   const auto standard_error = [](double area, double n) {
     const double q1 = area / (2.0 - area), q2 = 2.0 * area * area / (1.0 + area);
@@ -135,7 +135,7 @@ TEST(AucInterval, ItsLimitsAreTheAreasWithHanleyAndMcNeilsVariance) {
   }
 }
 
-TEST(AucInterval, OfCompleteSeparationStaysOpenBelow) {
+TEST(AucInterval, HasALowerLimitForCompleteSeparation) {
   EXPECT_EQ(auc_interval(1.0, 2, 12).high, 1.0);
   EXPECT_EQ(auc_interval(0.0, 2, 12).low, 0.0);
   EXPECT_LT(auc_interval(1.0, 2, 12).low, auc_interval(1.0, 20, 120).low);
@@ -157,7 +157,7 @@ TEST(AucInterval, CoversTheTrueAreaOfSmallGroups) {
   EXPECT_NEAR(static_cast<double>(covered) / kStudies, 0.95, 0.03);
 }
 
-TEST(CorrectedP, ByHandWithHolmAndBenjaminiHochberg) {
+TEST(CorrectedP, MatchesAManualHolmAndBenjaminiHochberg) {
   const Values p{0.03, 0.01, 0.5, 0.02};  // sorted 0.01 0.02 0.03 0.5
   const auto near = [](const Values& a, const Values& b) {
     ASSERT_EQ(a.size(), b.size());
@@ -171,7 +171,7 @@ TEST(CorrectedP, ByHandWithHolmAndBenjaminiHochberg) {
   EXPECT_TRUE(corrected_p({}, Correction::kHolm).empty());
 }
 
-TEST(CorrectedP, KeepsTheRiskOfAFalseFindingUnderTheNullHypothesis) {
+TEST(CorrectedP, ControlsTheFamilyWiseErrorRate) {
   // 20 metrics that differ in nothing: 64 % of studies would find one without a correction, at most 5 % with it.
   constexpr int kStudies = 1000;
   int none = 0, holm = 0, benjamini_hochberg = 0;

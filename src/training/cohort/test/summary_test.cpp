@@ -20,17 +20,17 @@ TEST(Quantile, InterpolatesBetweenSortedValues) {
   EXPECT_DOUBLE_EQ(quartiles->max, 40.0);
 }
 
-TEST(Quantile, OfOneValueIsTheValueAndOfNoneIsEmpty) {
+TEST(Quantile, HandlesOneValueAndNone) {
   EXPECT_EQ(quantile_of(std::vector{7.0}, 0.3), 7.0);
   EXPECT_FALSE(quantile_of({}, 0.5));
   EXPECT_FALSE(quartiles_of({}));
 }
 
-TEST(StandardDeviation, IsThatOfASample) {
+TEST(StandardDeviation, UsesTheSampleFormula) {
   EXPECT_DOUBLE_EQ(standard_deviation_of(std::vector{2.0, 4.0}), std::sqrt(2.0));
 }
 
-TEST(PersonMean, TakesTheChosenAttemptsThatHaveAValue) {
+TEST(PersonMean, AveragesSelectedAttemptsWithValues) {
   const std::vector<std::optional<double>> scores{10.0, std::nullopt, 30.0, std::numeric_limits<double>::quiet_NaN(),
                                                   50.0};
   EXPECT_EQ(person_mean(scores), 30.0);

@@ -18,7 +18,7 @@ std::vector<FollowUp> people(const std::vector<double>& reached, const std::vect
 
 // Acute myelogenous leukaemia, data set aml of R's package survival; print(survfit(Surv(time, status) ~ x)) gives
 // 11 7 31 18 NA and 12 11 23 8 NA.
-TEST(Survival, HasTheMediansThatRPrints) {
+TEST(Survival, MatchesTheMediansOfR) {
   const auto maintained = survival_of(people({9, 13, 18, 23, 31, 34, 48}, {13, 28, 45, 161}));
   ASSERT_TRUE(maintained) << maintained.error().text();
   EXPECT_EQ(maintained->people, 11u);
@@ -34,7 +34,7 @@ TEST(Survival, HasTheMediansThatRPrints) {
   EXPECT_FALSE(others->high);
 }
 
-TEST(Survival, FollowsTheSharesOfTheDefinition) {
+TEST(Survival, MatchesTheDefinition) {
   const auto found = survival_of(people({2, 3, 3, 6}, {3, 4}));
   ASSERT_TRUE(found);
   ASSERT_EQ(found->steps.size(), 3u);
@@ -47,12 +47,12 @@ TEST(Survival, FollowsTheSharesOfTheDefinition) {
   EXPECT_EQ(found->median, 3.0);
 }
 
-TEST(Survival, WithoutCensoringTheMedianIsThatOfThePeople) {
+TEST(Survival, MedianWithoutCensoringIsTheSampleMedian) {
   EXPECT_EQ(survival_of(people({1, 2, 3, 4, 5}, {}))->median, 3.0);
   EXPECT_EQ(survival_of(people({1, 2, 3, 4}, {}))->median, 2.0);
 }
 
-TEST(Survival, IsOpenWhereMostHaveNotReachedIt) {
+TEST(Survival, HasNoMedianIfMostAreCensored) {
   const auto found = survival_of(people({4}, {9, 9, 9}));
   ASSERT_TRUE(found);
   EXPECT_FALSE(found->median);
@@ -61,12 +61,12 @@ TEST(Survival, IsOpenWhereMostHaveNotReachedIt) {
   EXPECT_TRUE(survival_of(people({}, {5, 6}))->steps.empty());
 }
 
-TEST(Survival, CensoredPeopleMakeTheMedianLarger) {
+TEST(Survival, CensoringRaisesTheMedian) {
   // Ignoring the three who never got there would give 3.
   EXPECT_EQ(survival_of(people({2, 3, 4, 8}, {20, 20, 20}))->median, 8.0);
 }
 
-TEST(Survival, TheIntervalOfTheMedianHoldsIt) {
+TEST(Survival, MedianLiesWithinItsInterval) {
   // Geometric numbers of trials with p = 0.2 (median 4), followed for 3 to 12 trials: 1000 studies of 20 people.
   Random random(7);
   int held = 0;
@@ -85,7 +85,7 @@ TEST(Survival, TheIntervalOfTheMedianHoldsIt) {
   EXPECT_GT(held, 920);
 }
 
-TEST(Survival, RefusesNobodyAndTimesThatAreNone) {
+TEST(Survival, RefusesEmptyInputAndInvalidTimes) {
   EXPECT_FALSE(survival_of({}));
   EXPECT_FALSE(survival_of(people({std::nan("")}, {})));
   EXPECT_FALSE(survival_of(people({-1.0}, {2.0})));

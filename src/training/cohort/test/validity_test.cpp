@@ -48,7 +48,7 @@ TEST(Validity, FindsTheMetricThatSeparates) {
   EXPECT_EQ(validity_of(study(false)).simulated, 0u);
 }
 
-TEST(Validity, WorseExpertsAreNoEvidence) {
+TEST(Validity, WorseExpertsGiveNoEvidence) {
   CohortData data = study(true);
   data.metrics[0].better = Better::kHigher;
   const Validity validity = validity_of(data);
@@ -57,7 +57,7 @@ TEST(Validity, WorseExpertsAreNoEvidence) {
   EXPECT_FALSE(validity.metrics[0].discriminates);
 }
 
-TEST(Validity, HolmIsTooStrictForTwoExpertsAndThreeMetrics) {
+TEST(Validity, HolmRejectsTwoExpertsAndThreeMetrics) {
   CohortData data = study(true);
   data.metrics.push_back(data.metrics[0]);
   const Validity holm = validity_of(data, {0.05, Correction::kHolm});
@@ -71,7 +71,7 @@ TEST(Validity, HolmIsTooStrictForTwoExpertsAndThreeMetrics) {
   EXPECT_EQ(smallest_p_text(0, 12, 3, 0.05), "");
 }
 
-TEST(Validity, LeavesOutMissingValues) {
+TEST(Validity, SkipsMissingValues) {
   CohortData data = study(true);
   data.metrics[0].values[5].reset();
   data.metrics[1].values[0].reset();
@@ -89,7 +89,7 @@ TEST(Validity, LeavesOutMissingValues) {
   EXPECT_EQ(validity.pass_mark->novices.people, 11u);
 }
 
-TEST(Validity, OfNobodyHasReasons) {
+TEST(Validity, GivesReasonsForAnEmptyGroup) {
   const Validity validity = validity_of({});
   EXPECT_EQ(validity.experts + validity.novices + validity.tested, 0u);
   EXPECT_FALSE(validity.score.separation);

@@ -13,7 +13,7 @@ SeenBody attempt_on(const std::string& patient, std::uint64_t seed, const std::s
 
 const FitCheck kAlways = [](std::uint64_t number) -> Result<std::string> { return std::to_string(number); };
 
-TEST(ExamBody, IsDrawnByTheSeedAndNeverThePractisedOne) {
+TEST(ExamBody, IsDrawnBySeedAndNeverThePractisedBody) {
   std::set<std::uint64_t> numbers;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const auto body = draw_body("biopsy-2", {}, seed, kAlways);
@@ -44,7 +44,7 @@ TEST(ExamBody, IsNeverDrawnFromTheHistory) {
   EXPECT_NE(none.error().text().find("all bodies are known"), std::string::npos);
 }
 
-TEST(ExamBody, IsKnownByItsContentUnderAnotherName) {
+TEST(ExamBody, IsRecognisedByContentUnderAnotherName) {
   SeenBody elsewhere = attempt_on("/cases/copy", 1);
   elsewhere.hash = "4711";  // kAlways takes the number for the content
   EXPECT_TRUE(find_body({"biopsy-2", 4711}, {&elsewhere, 1}, {}, kAlways)->is_known);
@@ -56,7 +56,7 @@ TEST(ExamBody, IsKnownByItsContentUnderAnotherName) {
   EXPECT_NE(draw_body("biopsy-2", all, 5, kAlways)->number, first);
 }
 
-TEST(ExamBody, ThatCannotServeTheTaskIsReplaced) {
+TEST(ExamBody, ReplacesAnUnfitBody) {
   const std::uint64_t first = draw_body("biopsy-2", {}, 5, kAlways)->number;
   const auto body = draw_body("biopsy-2", {}, 5, [&](std::uint64_t number) -> Result<std::string> {
     if (number == first) return fail("there is no safe path");
@@ -67,7 +67,7 @@ TEST(ExamBody, ThatCannotServeTheTaskIsReplaced) {
   EXPECT_EQ(body->unfit, std::vector<std::uint64_t>{first});
 }
 
-TEST(ExamBody, DrawingEndsWithTheReasonWhenNoneIsFit) {
+TEST(ExamBody, FailsWithAReasonIfNoBodyIsFit) {
   int tries = 0;
   const auto body = draw_body("biopsy-2", {}, 5, [&](std::uint64_t) -> Result<std::string> {
     ++tries;
@@ -78,7 +78,7 @@ TEST(ExamBody, DrawingEndsWithTheReasonWhenNoneIsFit) {
   EXPECT_NE(body.error().text().find("no safe path"), std::string::npos);
 }
 
-TEST(ExamBody, OfAGivenNumberMayBeKnown) {
+TEST(ExamBody, ReportsIfAGivenNumberIsKnown) {
   const std::vector<SeenBody> history{attempt_on("biopsy-2", 4711)};
   EXPECT_TRUE(find_body({"biopsy-2", 4711}, history, {}, kAlways)->is_known);
   EXPECT_FALSE(find_body({"biopsy-2", 4712}, history, {}, kAlways)->is_known);
@@ -98,7 +98,7 @@ TEST(ExamBody, OfAGivenNumberMayBeKnown) {
   EXPECT_NE(unfit.error().text().find("exam 4711 cannot be held: no liver"), std::string::npos);
 }
 
-TEST(ExamBody, AFolderIsKnownWhateverTheSeed) {
+TEST(ExamBody, RecognisesAFolderForAnySeed) {
   const std::vector<SeenBody> history{attempt_on("/cases/one", 1)};
   EXPECT_TRUE(is_known_body(history, {"/cases/one", 9}));
   EXPECT_FALSE(is_known_body(history, {"/cases/two", 1}));

@@ -39,7 +39,7 @@ struct SignedExam : ::testing::Test {
   std::string text;
 };
 
-TEST_F(SignedExam, SaysWhatWasAskedAndReached) {
+TEST_F(SignedExam, StatesTaskAndResult) {
   const Json all = json();
   EXPECT_EQ(all["task"], "liver-biopsy");
   EXPECT_EQ(all["exam_number"], 4711);
@@ -66,14 +66,14 @@ TEST_F(SignedExam, SaysWhatWasAskedAndReached) {
   EXPECT_TRUE(verification.details[4].starts_with("does not prove: who held the needle")) << verification.details[4];
 }
 
-TEST_F(SignedExam, OfNobodySaysSo) {
+TEST_F(SignedExam, StatesThatNoPersonWasChosen) {
   storage::SessionInfo info = exam_info();
   info.person_id.clear();
   const auto verification = verify_exam(sign("b", info), key.public_key());
   EXPECT_EQ(verification->details[0], "person: nobody was chosen on the start page");
 }
 
-TEST_F(SignedExam, EveryChangedMemberIsFound) {
+TEST_F(SignedExam, DetectsEveryChangedMember) {
   const Json all = json();
   ASSERT_GE(all.size(), 20u);
   for (const auto& [name, value] : all.items()) {
@@ -94,7 +94,7 @@ TEST_F(SignedExam, EveryChangedMemberIsFound) {
   EXPECT_FALSE(verify(config::json_text(more) + "\n").is_valid());
 }
 
-TEST_F(SignedExam, EveryChangedByteIsFound) {
+TEST_F(SignedExam, DetectsEveryChangedByte) {
   for (std::size_t at = 0; at < text.size(); ++at) {
     std::string changed = text;
     changed[at] = static_cast<char>(changed[at] ^ 1);
@@ -102,7 +102,7 @@ TEST_F(SignedExam, EveryChangedByteIsFound) {
   }
 }
 
-TEST_F(SignedExam, AMemberThatIsGivenTwiceIsFound) {
+TEST_F(SignedExam, DetectsADuplicateMember) {
   // Another reader of JSON could take the first one.
   std::string twice = text;
   twice.replace(twice.find("  \"passed\": false"), 0, "  \"passed\": true,\n");
@@ -110,7 +110,7 @@ TEST_F(SignedExam, AMemberThatIsGivenTwiceIsFound) {
   EXPECT_EQ(verify(text + " ").verdict, Verdict::kChanged);
 }
 
-TEST_F(SignedExam, ATruncatedSignatureIsFound) {
+TEST_F(SignedExam, DetectsATruncatedSignature) {
   Json all = json();
   const std::string signature = all["signature"];
   for (const std::size_t length : {std::size_t{0}, std::size_t{1}, signature.size() - 2}) {
@@ -134,7 +134,7 @@ TEST_F(SignedExam, AnotherStationsKeyIsNamed) {
   EXPECT_EQ(verify_exam(result, key.public_key())->verdict, Verdict::kOtherKey);
 }
 
-TEST_F(SignedExam, AReplacedSessionIsFoundAndAMissingOneNoted) {
+TEST_F(SignedExam, DetectsAReplacedSessionAndNotesAMissingOne) {
   fs::remove(session);
   const auto alone = verify_exam(result, key.public_key());
   ASSERT_TRUE(alone);
@@ -147,7 +147,7 @@ TEST_F(SignedExam, AReplacedSessionIsFoundAndAMissingOneNoted) {
   EXPECT_NE(replaced->text.find("session a.trocar"), std::string::npos) << replaced->text;
 }
 
-TEST_F(SignedExam, AJournalBesideTheSessionIsFound) {
+TEST_F(SignedExam, DetectsAJournalBesideTheSession) {
   for (const std::filesystem::path& beside : storage::session_files(session)) {
     if (beside == session) continue;
     ASSERT_TRUE(write_file_atomically(beside, "what a reader would see instead"));
@@ -181,7 +181,7 @@ TEST_F(SignedExam, OtherTablesAndVersionsAreNamed) {
   EXPECT_NE(of_older_forces->text.find("version 1 of the forces"), std::string::npos) << of_older_forces->text;
 }
 
-TEST_F(SignedExam, HasTheTablesOfTheAttemptWheneverItIsSigned) {
+TEST_F(SignedExam, SignsTheTablesOfTheAttempt) {
   fs::remove(result);
   const testing::OwnDataFolder data;
   data.change("tasks/liver-biopsy.toml", "pass_mark = 70.0", "pass_mark = 1.0");
@@ -189,7 +189,7 @@ TEST_F(SignedExam, HasTheTablesOfTheAttemptWheneverItIsSigned) {
   EXPECT_EQ(verify_exam(result, key.public_key())->verdict, Verdict::kOtherVersion);
 }
 
-TEST_F(SignedExam, IsNotSignedTwiceNorAnythingThatIsNoExam) {
+TEST_F(SignedExam, RefusesASecondSignatureAndNonExams) {
   const auto again = sign_exam(session, {}, key);
   ASSERT_FALSE(again);
   EXPECT_NE(again.error().text().find("signed already"), std::string::npos);
@@ -205,7 +205,7 @@ TEST_F(SignedExam, IsNotSignedTwiceNorAnythingThatIsNoExam) {
 }
 
 // Format 1 was signed at any time after the attempt: it stays what it was.
-TEST_F(SignedExam, AnOlderResultStaysVerifiableAndProvesLess) {
+TEST_F(SignedExam, OlderResultIsVerifiableButProvesLess) {
   Json old = json();
   for (const char* added : {"attempt_id", "person", "person_id", "person_checked_by", "patient_seed", "sealed_utc",
                             "ticks_hash", "body_was_seen_unnamed", "known_by"})
@@ -225,13 +225,13 @@ TEST_F(SignedExam, AnOlderResultStaysVerifiableAndProvesLess) {
   EXPECT_EQ(verify(canonical_text(relabelled)).verdict, Verdict::kChanged);
 }
 
-TEST_F(SignedExam, ASealIsNoResult) {
+TEST_F(SignedExam, RefusesASealAsAResult) {
   const auto verification = verify_exam(seal_file_of(session), key.public_key());
   ASSERT_FALSE(verification);
   EXPECT_NE(verification.error().text().find("is the seal of an exam"), std::string::npos);
 }
 
-TEST_F(SignedExam, AFileThatIsNoResultIsRefused) {
+TEST_F(SignedExam, RefusesANonResultFile) {
   for (const char* other : {"", "{}", "[1]", "hello", "{\"format\": \"other\"}"}) {
     fs::remove(result);
     ASSERT_TRUE(write_file_atomically(result, other));

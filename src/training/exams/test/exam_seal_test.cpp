@@ -50,7 +50,7 @@ TEST_F(SealedExam, BindsPersonTaskBodyVersionTablesAndRecording) {
   EXPECT_EQ(json["session_sha256"].get<std::string>().size(), 64u);
 }
 
-TEST_F(SealedExam, ASessionEditedAtAnyPlaceIsNotSigned) {
+TEST_F(SealedExam, RefusesToSignAnEditedSession) {
   const std::string bytes = *read_file(session);
   ASSERT_GT(bytes.size(), 10'000u);
   // Every 997th byte, the first and the last ones: header, pages, text, free space.
@@ -71,13 +71,13 @@ TEST_F(SealedExam, ASessionEditedAtAnyPlaceIsNotSigned) {
   EXPECT_EQ(refusal(), "");
 }
 
-TEST_F(SealedExam, AnotherValidSessionInItsPlaceIsNotSigned) {
+TEST_F(SealedExam, RefusesToSignASubstitutedSession) {
   record_exam(folder / "b.trocar", exam_info(), 99.0);
   fs::rename(folder / "b.trocar", session);
   EXPECT_NE(refusal().find("not the sealed one"), std::string::npos) << refusal();
 }
 
-TEST_F(SealedExam, SealsOfTwoSessionsCannotBeSwapped) {
+TEST_F(SealedExam, DetectsSwappedSeals) {
   storage::SessionInfo other = exam_info();
   other.attempt_id = "other", other.person_id = "bob";
   ASSERT_TRUE(seal_exam(folder / "b.trocar", record_exam(folder / "b.trocar", other), key));
@@ -88,7 +88,7 @@ TEST_F(SealedExam, SealsOfTwoSessionsCannotBeSwapped) {
   EXPECT_NE(refusal(folder / "b.trocar", key).find("not the sealed one"), std::string::npos);
 }
 
-TEST_F(SealedExam, ARenamedSessionNeedsItsSealRenamedToo) {
+TEST_F(SealedExam, RenamedSessionNeedsARenamedSeal) {
   fs::rename(session, folder / "renamed.trocar");
   EXPECT_NE(refusal(folder / "renamed.trocar", key).find("has no seal"), std::string::npos);
   fs::rename(seal, folder / "renamed.seal.json");
@@ -98,7 +98,7 @@ TEST_F(SealedExam, ARenamedSessionNeedsItsSealRenamedToo) {
   EXPECT_TRUE(verify_exam(*made, key.public_key())->is_valid());
 }
 
-TEST_F(SealedExam, EveryChangedByteOfTheSealIsFound) {
+TEST_F(SealedExam, DetectsEveryChangedByteOfTheSeal) {
   const std::string text = *read_file(seal);
   for (std::size_t at = 0; at < text.size(); ++at) {
     std::string changed = text;
@@ -114,7 +114,7 @@ TEST_F(SealedExam, EveryChangedByteOfTheSealIsFound) {
   EXPECT_NE(refusal().find("has no seal"), std::string::npos);
 }
 
-TEST_F(SealedExam, AnotherStationCannotSignIt) {
+TEST_F(SealedExam, RefusesToSignOnAnotherStation) {
   EXPECT_NE(refusal(session, *signing::SigningKey::make()).find("another station"), std::string::npos);
 }
 
@@ -122,7 +122,7 @@ TEST_F(SealedExam, IsSealedOnce) {
   EXPECT_NE(seal_exam(session, end, key).error().text().find("sealed already"), std::string::npos);
 }
 
-TEST(ExamSeal, IsNotMadeOfASessionThatDiffersFromTheMemory) {
+TEST(ExamSeal, RefusesASessionThatDiffersFromMemory) {
   const TemporaryFolder folder;
   const auto key = *signing::SigningKey::make();
   const fs::path session = folder / "a.trocar";
@@ -149,7 +149,7 @@ TEST(ExamSeal, IsNotMadeOfASessionThatDiffersFromTheMemory) {
   EXPECT_TRUE(seal_exam(session, good, key));
 }
 
-TEST(ExamSeal, OfAnExamThatWasNotScoredIsMade) {
+TEST(ExamSeal, IsMadeForAnUnscoredExam) {
   const TemporaryFolder folder;
   const auto key = *signing::SigningKey::make();
   ExamEnd end{exam_info(), {}, {}, {"ada", "Ada", false}, *digest_of_data(data_dir())};
@@ -167,7 +167,7 @@ TEST(ExamSeal, OfAnExamThatWasNotScoredIsMade) {
   EXPECT_EQ(json["person_checked_by"], "nothing");
 }
 
-TEST(ExamSeal, IsMadeOfFinishedExamsAlone) {
+TEST(ExamSeal, IsMadeOnlyForFinishedExams) {
   const TemporaryFolder folder;
   const auto key = *signing::SigningKey::make();
   storage::SessionInfo info = exam_info();

@@ -24,7 +24,7 @@ bool is_known(const std::vector<SeenBody>& history, const storage::SessionInfo& 
   return result_with(history, info)["body_was_known"].get<bool>();
 }
 
-TEST(KnownBody, IsDecidedByTheAttemptsOfThePersonThatLieBefore) {
+TEST(KnownBody, DependsOnEarlierAttemptsOfThePerson) {
   const sys_seconds earlier = kBegin - hours(1), later = kBegin + hours(1);
   EXPECT_FALSE(is_known({}));
   EXPECT_TRUE(is_known({{"1", "ada", "biopsy-2", 4711, earlier, {}}}));
@@ -35,7 +35,7 @@ TEST(KnownBody, IsDecidedByTheAttemptsOfThePersonThatLieBefore) {
   EXPECT_FALSE(is_known({{"1", "bob", "biopsy-2", 4711, earlier, {}}})) << "another person";
 }
 
-TEST(KnownBody, IsDecidedByTheOrderOfRecordingWhateverTheClock) {
+TEST(KnownBody, DependsOnRecordingOrderNotOnTheClock) {
   const std::string own = exam_info().attempt_id;
   const SeenBody itself{own, "ada", "biopsy-2", 4711, kBegin, 7};
   const sys_seconds earlier = kBegin - hours(1), later = kBegin + hours(1);
@@ -46,7 +46,7 @@ TEST(KnownBody, IsDecidedByTheOrderOfRecordingWhateverTheClock) {
   EXPECT_EQ(result_with({})["known_by"], "sessions of the station");
 }
 
-TEST(KnownBody, AttemptsThatNameNobodyAreSaidBeside) {
+TEST(KnownBody, ReportsAnonymousAttemptsSeparately) {
   const std::vector<SeenBody> unnamed{{"1", "", "biopsy-2", 4711, kBegin - hours(1), {}}};
   const config::Json result = result_with(unnamed);
   EXPECT_EQ(result["body_was_known"], false);
@@ -58,7 +58,7 @@ TEST(KnownBody, AttemptsThatNameNobodyAreSaidBeside) {
   EXPECT_TRUE(is_known({{"1", "bob", "biopsy-2", 4711, kBegin - hours(1), {}}}, nobody));
 }
 
-TEST(KnownBody, ThePractisedBodyAndAFolderAreKnown) {
+TEST(KnownBody, IncludesThePractisedBodyAndFolders) {
   storage::SessionInfo info = exam_info();
   info.patient_seed = 1;
   EXPECT_TRUE(is_known({}, info));
@@ -67,7 +67,7 @@ TEST(KnownBody, ThePractisedBodyAndAFolderAreKnown) {
   EXPECT_TRUE(is_known({}, info));
 }
 
-TEST(SeenOnStation, ReadsWhatTheSessionsSayAndNotTheDatesOfTheirFiles) {
+TEST(SeenOnStation, UsesSessionTimesNotFileDates) {
   const TemporaryFolder folder;
   record_exam(folder / "a.trocar", exam_info());
   record_exam(folder / "interrupted.session", exam_info(), 1.0, false);

@@ -22,7 +22,7 @@ TEST(Curriculum, HasFiveCasesOfEachTaskByDifficulty) {
   EXPECT_EQ(curriculum->find("no-such-task"), nullptr);
 }
 
-TEST(LearningRules, NameTheFileAndTheKeyOfAFault) {
+TEST(LearningRules, NameTheFileAndKeyOfAnError) {
   struct Fault {
     const char *from, *to, *named;
   };

@@ -37,7 +37,7 @@ void write_session(const std::filesystem::path& path, const std::string& time, d
   ASSERT_TRUE(writer->finish(outcome_of(score), {}));
 }
 
-TEST(History, HoldsWhatASessionSays) {
+TEST(History, ReadsAnAttemptFromASession) {
   const auto attempt = attempt_of({info_at("2026-02-28T23:59:58Z"), outcome_of(88.5)});
   ASSERT_TRUE(attempt) << attempt.error().text();
   EXPECT_EQ(attempt->task, "liver-biopsy");
@@ -51,7 +51,7 @@ TEST(History, HoldsWhatASessionSays) {
   EXPECT_DOUBLE_EQ(attempt->part_shares.at("target"), 0.75);
 }
 
-TEST(History, AnAttemptWithoutScoreOrLevelHasNone) {
+TEST(History, KeepsScoreAndLevelEmptyIfAbsent) {
   EXPECT_FALSE(attempt_of({info_at("2026-02-28T23:59:58Z"), std::nullopt})->score);
   scoring::Outcome outcome;
   outcome.not_scored = "the needle never touched the skin";
@@ -64,7 +64,7 @@ TEST(History, AnAttemptWithoutScoreOrLevelHasNone) {
   EXPECT_FALSE(attempt_of({info, outcome_of(1.0)})->level);
 }
 
-TEST(History, AnAttemptInTheBodyWithoutAScoreCounts) {
+TEST(History, CountsAnUnscoredAttemptInTheBody) {
   const storage::SessionInfo info = info_at("2026-02-28T23:59:58Z");
   scoring::Outcome outcome;
   outcome.not_scored = "the gun was not fired";  // of an older program: without measures
@@ -79,7 +79,7 @@ TEST(History, AnAttemptInTheBodyWithoutAScoreCounts) {
   EXPECT_EQ(attempt_of({info, std::nullopt})->ending, Ending::kLost);
 }
 
-TEST(History, CountsSayWhatWasLeftOutAndWhy) {
+TEST(History, CountsStateExcludedAttemptsWithReasons) {
   AttemptCounts counts;
   EXPECT_EQ(counts_text(counts), "0 attempts counted");
   for (int n = 0; n < 8; ++n) counts.add(Ending::kScored, true);
@@ -98,7 +98,7 @@ TEST(History, CountsSayWhatWasLeftOutAndWhy) {
   EXPECT_EQ(all.left_out(), 4);
 }
 
-TEST(History, RefusesATimeThatIsNone) {
+TEST(History, RefusesAMalformedTime) {
   for (const char* time : {"", "yesterday", "2026-02-30T00:00:00Z", "2026-13-01T00:00:00Z", "2026-01-01T24:00:00Z",
                            "2026-01-01 00:00:00Z", "2026-01-01T00:00:00Zx", "-026-01-01T00:00:00Z"})
     EXPECT_FALSE(attempt_of({info_at(time), outcome_of(1.0)})) << time;
@@ -121,7 +121,7 @@ TEST(History, ListsAttemptsByTimeAndNamesDamagedSessions) {
   EXPECT_NE(history->damaged[0].find("bad.trocar"), std::string::npos) << history->damaged[0];
 }
 
-TEST(History, AMissingFolderHasNoAttempts) {
+TEST(History, IsEmptyForAMissingFolder) {
   const TemporaryFolder folder;
   const auto history = read_history(folder / "nothing");
   ASSERT_TRUE(history);

@@ -32,7 +32,7 @@ bool has_text(const std::vector<std::string>& lines, std::string_view text) {
   return false;
 }
 
-TEST(NextExercise, BeginsWithTheEasiestCaseOfTheFirstTask) {
+TEST(NextExercise, StartsWithTheEasiestCaseOfTheFirstTask) {
   const Recommendation advice = next({});
   expect_exercise(advice, Purpose::kNextStep, "biopsy-1", Level::kGuided);
   EXPECT_EQ(exercise_text(*advice.exercise, example_curriculum()), "Biopsy, case 1, guided");
@@ -41,7 +41,7 @@ TEST(NextExercise, BeginsWithTheEasiestCaseOfTheFirstTask) {
   expect_exercise(next({}, 0, "tap"), Purpose::kNextStep, "tap-1", Level::kGuided);
 }
 
-TEST(NextExercise, TakesHelpAwayThenGoesToTheNextCase) {
+TEST(NextExercise, ReducesHelpThenAdvancesToTheNextCase) {
   std::vector<PastAttempt> history;
   add(history, 2, attempt("biopsy-1", Level::kGuided, 0));
   expect_exercise(next(history), Purpose::kNextStep, "biopsy-1", Level::kGuided);
@@ -56,7 +56,7 @@ TEST(NextExercise, TakesHelpAwayThenGoesToTheNextCase) {
   EXPECT_TRUE(has_text(next(history).reasons, "case 1 at all levels of help"));
 }
 
-TEST(NextExercise, AnExamMasteredWithoutAFailureOffersTheNextOneAtOnce) {
+TEST(NextExercise, FlawlessExamOffersTheNextExam) {
   std::vector<PastAttempt> history;
   master(history, "biopsy-1", 0);
   Recommendation advice = next(history, 0, "biopsy");
@@ -71,7 +71,7 @@ TEST(NextExercise, AnExamMasteredWithoutAFailureOffersTheNextOneAtOnce) {
   expect_exercise(next(history, 0, "biopsy"), Purpose::kTestOut, "biopsy-3", Level::kExam);
 }
 
-TEST(NextExercise, AnotherTaskComesInBetween) {
+TEST(NextExercise, InterleavesAnotherTask) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("biopsy-1", Level::kGuided, 0, 50.0, false));
   Recommendation advice = next(history);
@@ -90,7 +90,7 @@ TEST(NextExercise, AnotherTaskComesInBetween) {
   expect_exercise(next(history), Purpose::kInterleave, "tap-1", Level::kGuided);
 }
 
-TEST(NextExercise, AMasteredExerciseComesInBetweenWhereNothingElseIsOpen) {
+TEST(NextExercise, InterleavesAMasteredExerciseIfNothingElseIsOpen) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("tap-1", Level::kExam, 0));
   add(history, 3, attempt("biopsy-1", Level::kGuided, 0, 50.0, false));
@@ -100,14 +100,14 @@ TEST(NextExercise, AMasteredExerciseComesInBetweenWhereNothingElseIsOpen) {
   expect_exercise(next(history), Purpose::kInterleave, "tap-1", Level::kExam);
 }
 
-TEST(NextExercise, ARepetitionIsNotRecommendedForEver) {
+TEST(NextExercise, StopsRecommendingAFailedRepetition) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
   for (int n = 1; n <= 3; ++n) history.push_back(attempt("biopsy-1", Level::kGuided, n, 50.0, false));
   expect_exercise(next(history, 4), Purpose::kNextStep, "biopsy-1", Level::kAssisted);
 }
 
-TEST(NextExercise, APlateauAsksForTheInstructor) {
+TEST(NextExercise, PlateauRefersToTheInstructor) {
   std::vector<PastAttempt> history;
   add(history, 10, attempt("biopsy-1", Level::kGuided, 0, 61.0));
   Recommendation advice = next(history);
@@ -123,7 +123,7 @@ TEST(NextExercise, APlateauAsksForTheInstructor) {
   expect_exercise(next(history), Purpose::kInterleave, "biopsy-1", Level::kGuided);  // rested: it may be tried again
 }
 
-TEST(NextExercise, APlateauOfTheOnlyExerciseHasNoOther) {
+TEST(NextExercise, PlateauOfTheOnlyExerciseHasNoAlternative) {
   Curriculum curriculum;
   curriculum.rules.intervals_days = {1};
   curriculum.rules.most_in_a_row = 100;
@@ -136,7 +136,7 @@ TEST(NextExercise, APlateauOfTheOnlyExerciseHasNoOther) {
   EXPECT_FALSE(stuck.exercise);
 }
 
-TEST(NextExercise, ADueRepetitionComesFirst) {
+TEST(NextExercise, RecommendsADueRepetitionFirst) {
   std::vector<PastAttempt> history;
   master(history, "biopsy-1", 0);
   add(history, 3, attempt("tap-1", Level::kGuided, 1));
@@ -164,7 +164,7 @@ PastAttempt weak(const std::string& patient, Level level, const std::string& par
   return one;
 }
 
-TEST(NextExercise, TheWeakestPartAsksForOneLevelMoreHelp) {
+TEST(NextExercise, WeakestPartAddsOneLevelOfHelp) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
   add(history, 3, weak("biopsy-1", Level::kAssisted, "visibility"));
@@ -195,7 +195,7 @@ TEST(NextExercise, MoreHelpDoesNotLockThePath) {
   expect_exercise(next(history), Purpose::kNextStep, "biopsy-1", Level::kAssisted);
 }
 
-TEST(NextExercise, APartOfFewPointsIsNotWeak) {
+TEST(NextExercise, IgnoresAWeakPartOfFewPoints) {
   Curriculum curriculum = example_curriculum();
   curriculum.courses[0].part_weights = {{"target", 90.0}, {"visibility", 5.0}, {"time", 5.0}};
   std::vector<PastAttempt> history;
@@ -208,7 +208,7 @@ TEST(NextExercise, APartOfFewPointsIsNotWeak) {
   EXPECT_FALSE(has_text(advice.reasons, "weakest"));
 }
 
-TEST(NextExercise, TheWeakestPartChoosesATaskThatJudgesIt) {
+TEST(NextExercise, WeakestPartSelectsATaskThatScoresIt) {
   std::vector<PastAttempt> history;
   add(history, 3, weak("biopsy-1", Level::kGuided, "visibility"));
   PastAttempt tap = attempt("tap-1", Level::kGuided, 0, 60.0, false);
@@ -219,7 +219,7 @@ TEST(NextExercise, TheWeakestPartChoosesATaskThatJudgesIt) {
   EXPECT_TRUE(has_text(advice.reasons, "it cost 12 of 20 points"));
 }
 
-TEST(NextExercise, SaysWhenEverythingIsMastered) {
+TEST(NextExercise, ReportsWhenEverythingIsMastered) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("tap-1", Level::kExam, 0));
   const Recommendation advice = next(history, 0, "tap");
@@ -228,7 +228,7 @@ TEST(NextExercise, SaysWhenEverythingIsMastered) {
   EXPECT_TRUE(has_text(advice.reasons, "Tap, case 1, exam on 2026-03-02"));
 }
 
-TEST(NextExercise, AClockSetBackIsNotedAndChangesNoMastery) {
+TEST(NextExercise, NotesAClockSetBackWithoutChangingMastery) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("biopsy-1", Level::kGuided, 50));
   const Recommendation advice = next(history, 10);
@@ -247,7 +247,7 @@ TEST(NextExercise, UnknownTasksAndCasesAreIgnored) {
   EXPECT_TRUE(has_text(advice.reasons, "no case"));
 }
 
-TEST(NextExercise, AnEmptyCurriculumHasNothing) {
+TEST(NextExercise, RecommendsNothingForAnEmptyCurriculum) {
   EXPECT_EQ(next_exercise({}, {}, day(0)).purpose, Purpose::kNothing);
 }
 

@@ -33,7 +33,7 @@ int mastered(const LearningRun& run, const Curriculum& curriculum) {
   return count;
 }
 
-TEST(PathSimulation, NoTraineePractisesOneExerciseForEver) {
+TEST(PathSimulation, NoTraineeRepeatsOneExerciseForever) {
   const Curriculum curriculum = real_curriculum();
   for (const TraineeModel& one : testing::trainee_models())
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
@@ -45,14 +45,14 @@ TEST(PathSimulation, NoTraineePractisesOneExerciseForEver) {
     }
 }
 
-TEST(PathSimulation, AWeakPartOfFivePointsDoesNotHoldATraineeUp) {
+TEST(PathSimulation, SmallWeakPartDoesNotDelayATrainee) {
   const Curriculum curriculum = real_curriculum();
   const LearningRun run = follow(model("weak in a small part"), curriculum, 30);
   EXPECT_EQ(run.purposes().count("more-help"), 0u);
   EXPECT_GE(mastered(run, curriculum), 12);
 }
 
-TEST(PathSimulation, AFastLearnerIsThroughQuickly) {
+TEST(PathSimulation, FastLearnerFinishesQuickly) {
   const Curriculum curriculum = real_curriculum();
   std::size_t steps = 0;
   for (const Course& course : curriculum.courses) steps += course.cases.size() * kLevels.size();
@@ -62,7 +62,7 @@ TEST(PathSimulation, AFastLearnerIsThroughQuickly) {
   EXPECT_GT(run.purposes()["test-out"], 0);
 }
 
-TEST(PathSimulation, ASlowLearnerGetsThroughMostlyWithoutTheInstructor) {
+TEST(PathSimulation, SlowLearnerFinishesMostlyWithoutTheInstructor) {
   const Curriculum curriculum = real_curriculum();
   const LearningRun run = follow(model("slow learner"), curriculum, 500);
   EXPECT_TRUE(run.is_through);
@@ -84,7 +84,7 @@ TEST(PathSimulation, APlateauReachesTheInstructorSoon) {
   EXPECT_GT(never_fires.purposes()["see-instructor"], 0);
 }
 
-TEST(PathSimulation, AForgetfulTraineeRepeatsAndStillGoesOn) {
+TEST(PathSimulation, ForgetfulTraineeRepeatsAndStillAdvances) {
   const Curriculum curriculum = real_curriculum();
   const LearningRun run = follow(model("forgetful"), curriculum, 300);
   EXPECT_GT(run.purposes()["repetition"], 60);

@@ -27,7 +27,7 @@ std::chrono::sys_days date(int n) {
   return std::chrono::floor<std::chrono::days>(day(n));
 }
 
-TEST(Progress, AStepIsMasteredByPassesInARow) {
+TEST(Progress, PassesInARowMasterAStep) {
   std::vector<PastAttempt> history;
   const PastAttempt pass = attempt("biopsy-1", Level::kGuided, 0);
   add(history, 2, pass);
@@ -43,7 +43,7 @@ TEST(Progress, AStepIsMasteredByPassesInARow) {
   EXPECT_FALSE(step_of(history, "biopsy-2", Level::kGuided).is_mastered);
 }
 
-TEST(Progress, APassBelowTheMasteryScoreBreaksTheRow) {
+TEST(Progress, PassBelowTheMasteryScoreResetsTheRow) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("biopsy-1", Level::kGuided, 0, 79.9));
   EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
@@ -52,7 +52,7 @@ TEST(Progress, APassBelowTheMasteryScoreBreaksTheRow) {
   EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
 }
 
-TEST(Progress, LostAndNeverBegunAttemptsAndThoseWithoutLevelDoNotCount) {
+TEST(Progress, IgnoresLostUnstartedAndUnlevelledAttempts) {
   std::vector<PastAttempt> history;
   add(history, 2, attempt("biopsy-1", Level::kGuided, 0));
   for (const Ending ending : {Ending::kLost, Ending::kNeverBegan, Ending::kRunning}) {
@@ -66,7 +66,7 @@ TEST(Progress, LostAndNeverBegunAttemptsAndThoseWithoutLevelDoNotCount) {
   EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided).passes_in_a_row, 2);
 }
 
-TEST(Progress, AnAttemptWithoutAResultIsNotPassed) {
+TEST(Progress, CountsAnAttemptWithoutAResultAsNotPassed) {
   std::vector<PastAttempt> history;
   add(history, 2, attempt("biopsy-1", Level::kGuided, 0));
   history.push_back(unscored("biopsy-1", Level::kGuided, 0));
@@ -77,7 +77,7 @@ TEST(Progress, AnAttemptWithoutAResultIsNotPassed) {
   EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided, 1).repetition->has_failed);
 }
 
-TEST(Progress, AVeryGoodFirstAttemptMastersUntilOneFails) {
+TEST(Progress, ExcellentFirstAttemptMastersUntilAFailure) {
   std::vector<PastAttempt> history{attempt("biopsy-1", Level::kGuided, 0, 95.0)};
   EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
   EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_tested_out);
@@ -95,7 +95,7 @@ TEST(Progress, AVeryGoodFirstAttemptMastersUntilOneFails) {
   EXPECT_FALSE(step_of({attempt("tap-1", Level::kGuided, 0, 99.0, false)}, "tap-1", Level::kGuided).is_mastered);
 }
 
-TEST(Progress, APassedExamCoversTheHelpOfItsCaseAndOfEasierOnes) {
+TEST(Progress, PassedExamCoversHelpLevelsOfEasierCases) {
   const std::vector<PastAttempt> history{attempt("biopsy-2", Level::kExam, 0, 80.0)};
   for (const char* patient : {"biopsy-1", "biopsy-2"}) {
     EXPECT_TRUE(step_of(history, patient, Level::kAssisted).is_tested_out) << patient;
@@ -106,7 +106,7 @@ TEST(Progress, APassedExamCoversTheHelpOfItsCaseAndOfEasierOnes) {
   EXPECT_FALSE(step_of({attempt("biopsy-2", Level::kExam, 0, 79.0)}, "biopsy-2", Level::kGuided).is_mastered);
 }
 
-TEST(Progress, APlateauHasNoSlopeOverTheLastAttempts) {
+TEST(Progress, PlateauHasNoSlopeOverTheLastAttempts) {
   std::vector<PastAttempt> history;
   for (int n = 0; n < 9; ++n)
     history.push_back(attempt("biopsy-1", Level::kGuided, 0, n % 2 == 0 ? 60.0 : 62.0, false));
@@ -128,7 +128,7 @@ TEST(Progress, APlateauHasNoSlopeOverTheLastAttempts) {
   EXPECT_FALSE(step_of(rising, "biopsy-1", Level::kGuided).plateau) << "it is mastered";
 }
 
-TEST(Progress, AHarderCaseWithLessHelpCoversTheEasierOnes) {
+TEST(Progress, HarderCaseWithLessHelpCoversEasierOnes) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("biopsy-2", Level::kAssisted, 0));
   EXPECT_TRUE(step_of(history, "biopsy-1", Level::kGuided).is_mastered);
@@ -140,7 +140,7 @@ TEST(Progress, AHarderCaseWithLessHelpCoversTheEasierOnes) {
   EXPECT_FALSE(step_of(history, "biopsy-1", Level::kAssisted).repetition);  // it was never practised
 }
 
-TEST(Progress, RepetitionsComeAfterGrowingIntervals) {
+TEST(Progress, SchedulesRepetitionsAtGrowingIntervals) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
   const auto due = [&] { return step_of(history, "biopsy-1", Level::kGuided, 100).repetition->due; };
@@ -153,14 +153,14 @@ TEST(Progress, RepetitionsComeAfterGrowingIntervals) {
   EXPECT_EQ(due(), date(20 + 7));                            // the last interval stays
 }
 
-TEST(Progress, APassBeforeItsDayDoesNotLengthenTheInterval) {
+TEST(Progress, EarlyPassDoesNotLengthenTheInterval) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
   add(history, 5, attempt("biopsy-1", Level::kGuided, 0));
   EXPECT_EQ(step_of(history, "biopsy-1", Level::kGuided, 9).repetition->due, date(1));
 }
 
-TEST(Progress, AFailedRepetitionBeginsTheIntervalsAnew) {
+TEST(Progress, FailedRepetitionRestartsTheIntervals) {
   std::vector<PastAttempt> history;
   add(history, 3, attempt("biopsy-1", Level::kGuided, 0));
   add(history, 1, attempt("biopsy-1", Level::kGuided, 1));
@@ -174,7 +174,7 @@ TEST(Progress, AFailedRepetitionBeginsTheIntervalsAnew) {
   EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided, 9).repetition->has_failed);
 }
 
-TEST(Progress, OnlyTheLevelWithTheLeastHelpComesBack) {
+TEST(Progress, RepeatsOnlyTheLevelWithTheLeastHelp) {
   std::vector<PastAttempt> history;
   master(history, "biopsy-1", 0);
   EXPECT_FALSE(step_of(history, "biopsy-1", Level::kGuided).repetition);

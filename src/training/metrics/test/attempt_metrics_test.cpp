@@ -32,7 +32,7 @@ TEST(Metrics, APlannedAttemptHasNoDeviations) {
   }
 }
 
-TEST(Metrics, OffsetsAreWhereTheNeedleWasMinusWhereItWasPlanned) {
+TEST(Metrics, OffsetsAreActualMinusPlannedPositions) {
   const double angle = 5.0 * std::numbers::pi / 180.0;
   const Vec3 entry_P(53.0, 0.0, 46.0);
   const Attempt attempt = make_attempt({entry_P, entry_P + 40.0 * Vec3(std::sin(angle), std::cos(angle), 0.0)});
@@ -60,7 +60,7 @@ TEST(Metrics, CountsPullingBackButNotTremorAsTravel) {
   EXPECT_NEAR(measure_in_box(samples, {}).travel_mm, 40.0 + 20.0, 0.2);
 }
 
-TEST(Metrics, WithoutPunctureEventsEntersWhereTheDepthBegins) {
+TEST(Metrics, UsesDepthForEntryWithoutPunctureEvents) {
   Attempt attempt = make_attempt(make_box_plan().line_P);
   for (telemetry::TickSample& sample : attempt.samples) sample.events = {};
   const AttemptMetrics metrics = measure_in_box(attempt.samples, attempt.fired);
@@ -69,7 +69,7 @@ TEST(Metrics, WithoutPunctureEventsEntersWhereTheDepthBegins) {
   EXPECT_LT(metrics.entry_offset_P.norm(), 1e-3);
 }
 
-TEST(Metrics, TellsSkinNeverTouchedFromSkinNeverPierced) {
+TEST(Metrics, DistinguishesUntouchedFromUnpiercedSkin) {
   EXPECT_FALSE(measure_in_box({}, {}).has_touched_skin);
   const std::vector<telemetry::TickSample> whole = make_attempt(make_box_plan().line_P).samples;
   const std::vector<telemetry::TickSample> outside(whole.begin(), whole.begin() + 200);
@@ -79,7 +79,7 @@ TEST(Metrics, TellsSkinNeverTouchedFromSkinNeverPierced) {
   EXPECT_FALSE(measure_in_box(loading, {}).has_entered);
 }
 
-TEST(Metrics, SkipsSamplesThatAreNotFinite) {
+TEST(Metrics, SkipsNonFiniteSamples) {
   Attempt attempt = make_attempt(make_box_plan().line_P);
   const AttemptMetrics clean = measure_in_box(attempt.samples, attempt.fired);
   for (std::size_t i = 3; i < attempt.samples.size(); i += 7)

@@ -48,14 +48,14 @@ TEST(BevelMetrics, TheWorstPunctureOfTheLayerCounts) {
   EXPECT_EQ(find(values, "bevel_to_fibres").at_s, 2.0);
 }
 
-TEST(BevelMetrics, BothSidesOfTheBevelPartTheFibres) {
+TEST(BevelMetrics, TreatsBothBevelSidesAlike) {
   for (const double turned_deg : {0.0, 180.0, 360.0})
     EXPECT_NEAR(measure_one("bevel_to_fibres", {turned_puncture(0.0, turned_deg, 1)}, with_bevel()), 0.0, 1e-6);
   for (const double turned_deg : {90.0, 270.0})
     EXPECT_NEAR(measure_one("bevel_to_fibres", {turned_puncture(0.0, turned_deg, 1)}, with_bevel()), 90.0, 1e-4);
 }
 
-TEST(BevelMetrics, SaysWhyThereIsNoValue) {
+TEST(BevelMetrics, GivesTheReasonForAMissingValue) {
   EXPECT_EQ(missing_of("bevel_to_fibres", {turned_puncture(0.0, 0.0, 0)}, with_bevel()),
             "the layer of the fibres was not punctured");
   Moment without_roll = turned_puncture(0.0, 0.0, 1);

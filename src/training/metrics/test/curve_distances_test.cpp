@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kTolerance_mm = 1e-6;
 
-TEST(CurveDistances, OfAParallelLineAreItsOffset) {
+TEST(CurveDistances, EqualTheOffsetOfAParallelLine) {
   const Segment expert_P{{0.0, 0.0, 0.0}, {0.0, 60.0, 0.0}};
   const std::vector<Vec3> way_P{{3.0, 0.0, 4.0}, {3.0, 20.0, 4.0}, {3.0, 60.0, 4.0}};
   const CurveDistances distances = curve_distances(way_P, expert_P);
@@ -18,7 +18,7 @@ TEST(CurveDistances, OfAParallelLineAreItsOffset) {
   EXPECT_NEAR(distances.dtw_mm, 5.0, kTolerance_mm);
 }
 
-TEST(CurveDistances, OnlyTheFrechetDistanceCountsTheWayBack) {
+TEST(CurveDistances, OnlyFrechetCountsBacktracking) {
   const Segment expert_P{{0.0, 0.0, 0.0}, {0.0, 60.0, 0.0}};
   const std::vector<Vec3> way_P{{0.0, 0.0, 0.0}, {0.0, 60.0, 0.0}, {0.0, 20.0, 0.0}, {0.0, 60.0, 0.0}};
   constexpr double kSampling_mm = 0.6;
@@ -39,7 +39,7 @@ std::vector<telemetry::TickSample> to_depths(const std::vector<double>& depths_m
   return samples;
 }
 
-TEST(InsertionWay, IsThatOfTheDeepestInsertionUpToItsEnd) {
+TEST(InsertionWay, IsTheDeepestInsertionUpToItsEnd) {
   const auto samples = to_depths({-5.0, 4.0, 8.0, -2.0, 3.0, 10.0, 20.0, 12.0, -1.0, 6.0});
   const std::vector<Vec3> way_P = insertion_way(samples, {});
   ASSERT_FALSE(way_P.empty());

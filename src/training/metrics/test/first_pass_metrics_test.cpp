@@ -45,7 +45,7 @@ TEST(FirstPassMetrics, OneStraightPassSucceeds) {
   EXPECT_NEAR(*find(values, "time_to_target").at_s, 5.5, 0.1);
 }
 
-TEST(FirstPassMetrics, AWallThatDoesNotGiveWayIsNotTheTarget) {
+TEST(FirstPassMetrics, UnpiercedWallIsNotTheTarget) {
   Recording pressing =
       depths({{0.0, -5.0}, {5.504, 50.04}, {6.0, 53.0}});  // in the lesion's first voxels before it loads
   for (Moment& moment : pressing) {
@@ -56,13 +56,13 @@ TEST(FirstPassMetrics, AWallThatDoesNotGiveWayIsNotTheTarget) {
   EXPECT_EQ(measure_one("first_pass_success", pressing, box().context()), 0.0);
 }
 
-TEST(FirstPassMetrics, ASmallCorrectionIsNoNewPass) {
+TEST(FirstPassMetrics, SmallCorrectionIsNotANewPass) {
   EXPECT_EQ(
       measure_one("first_pass_success", depths({{0.0, -5.0}, {4.0, 40.0}, {5.0, 31.0}, {8.0, 60.0}}), box().context()),
       1.0);
 }
 
-TEST(FirstPassMetrics, AWithdrawalOrASecondPunctureBeforeTheTargetFails) {
+TEST(FirstPassMetrics, WithdrawalOrSecondPunctureFails) {
   auto values = measure(depths({{0.0, -5.0}, {4.0, 40.0}, {5.0, 29.0}, {8.0, 60.0}}), box().context());
   EXPECT_EQ(value_of(values, "first_pass_success"), 0.0);
   EXPECT_EQ(find(values, "first_pass_success").note, "the needle was withdrawn before");
@@ -72,20 +72,20 @@ TEST(FirstPassMetrics, AWithdrawalOrASecondPunctureBeforeTheTargetFails) {
   EXPECT_EQ(find(values, "first_pass_success").note, "the skin was pierced again before");
 }
 
-TEST(FirstPassMetrics, WhatFollowsTheTargetDoesNotMatter) {
+TEST(FirstPassMetrics, IgnoresMotionAfterTheTarget) {
   const auto values =
       measure(depths({{0.0, -5.0}, {6.0, 60.0}, {9.0, -5.0}, {10.0, -5.0}, {12.0, 30.0}}), box().context());
   EXPECT_EQ(value_of(values, "first_pass_success"), 1.0);
 }
 
-TEST(FirstPassMetrics, ATargetThatIsNotReachedIsNoSuccessAndHasNoTime) {
+TEST(FirstPassMetrics, MissedTargetHasNoSuccessAndNoTime) {
   const auto values = measure(depths({{0.0, -5.0}, {6.0, 60.0}}, 500.0, 75.0), box().context());
   EXPECT_EQ(value_of(values, "first_pass_success"), 0.0);
   EXPECT_EQ(missing_of("time_to_target", depths({{0.0, -5.0}, {6.0, 60.0}}, 500.0, 75.0), box().context()),
             "the target was not reached");
 }
 
-TEST(FirstPassMetrics, AnAttemptOutsideOfTheBodyHasNone) {
+TEST(FirstPassMetrics, AttemptOutsideTheBodyHasNoValues) {
   EXPECT_EQ(missing_of("first_pass_success", depths({{0.0, -5.0}, {1.0, -1.0}}), box().context()),
             "the needle was never in the body");
 }
@@ -97,7 +97,7 @@ TEST(FirstPassMetrics, InterruptionsAreNotCounted) {
   EXPECT_NEAR(measure_one("time_to_target", recording, box().context()), 5.0, 0.1);
 }
 
-TEST(FirstPassMetrics, ASlowRecordingDoesNotJumpOverTheTarget) {
+TEST(FirstPassMetrics, SlowRecordingDoesNotSkipTheTarget) {
   // Two moments a second: 35 mm apart, before and behind the lesion.
   EXPECT_EQ(measure_one("first_pass_success", depths({{0.0, -5.0}, {0.5, 1.5}, {1.0, 42.0}, {1.5, 77.0}}, 2.0),
                         box().context()),
@@ -114,7 +114,7 @@ TEST(FirstPassMetrics, IndentedSkinIsContactButNoPuncture) {
   EXPECT_EQ(missing_of("first_pass_success", recording, box().context()), "the needle was never in the body");
 }
 
-TEST(FirstPassMetrics, WithoutAPatientTheExpertPathsEndIsTheTarget) {
+TEST(FirstPassMetrics, UsesTheExpertPathEndWithoutAPatient) {
   MetricContext context = with_paths({{"plan", {Vec3(0.0, 0.0, 0.0), Vec3(0.0, 50.0, 0.0)}}});
   context.task = &box().task;
   const auto recording = record(7.0, 500.0, [](double t, Moment& m) { set_depth(m, 10.0 * t - 5.0); });
@@ -126,7 +126,7 @@ TEST(FirstPassMetrics, WithoutAPatientTheExpertPathsEndIsTheTarget) {
   EXPECT_EQ(missing_of("first_pass_success", recording, context), "no task was given");
 }
 
-TEST(FirstPassMetrics, ABiopsyReachesWithItsNotch) {
+TEST(FirstPassMetrics, BiopsyReachesTheTargetWithItsNotch) {
   MetricContext context = box().context();
   context.needle = make_gun();  // the notch's middle is 9.5 mm beyond the tip
   EXPECT_NEAR(measure_one("time_to_target", depths({{0.0, -5.0}, {7.0, 65.0}}), context), 4.05, 0.1);

@@ -65,7 +65,7 @@ class Harms : public ::testing::Test {
   tasks::Task task_;
 };
 
-TEST_F(Harms, TellsHowFarTheNeedleWent) {
+TEST_F(Harms, StateHowDeepTheNeedleWent) {
   const auto events = push(70.0, 50.0, 52.0);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].label, "colon");
@@ -76,7 +76,7 @@ TEST_F(Harms, TellsHowFarTheNeedleWent) {
   EXPECT_EQ(harm_words(events[0]), "the needle went 12 mm into the colon");
 }
 
-TEST_F(Harms, TheShaftCounts) {
+TEST_F(Harms, IncludeTheShaft) {
   const auto events = push(70.0, 50.0, 80.0);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_NEAR(events[0].inside_mm, 20.0, 0.6) << "right through";
@@ -109,7 +109,7 @@ TEST_F(Harms, AThinStructureIsCrossedNotGrazed) {
 }
 
 /// Tubes of 1 to 5 voxels across that the needle crosses in the middle, along the grid and obliquely to it.
-TEST_F(Harms, ATubeCrossedInTheMiddleIsNeverAGraze) {
+TEST_F(Harms, CentrallyCrossedTubeIsNeverAGraze) {
   const auto& geometry = patient_.labels.geometry;
   const anatomy::VirtualPatient clean = patient_;
   for (const double radius_mm : {0.6, 1.0, 1.5, 2.0, 2.5})
@@ -127,7 +127,7 @@ TEST_F(Harms, ATubeCrossedInTheMiddleIsNeverAGraze) {
       }
 }
 
-TEST_F(Harms, WhatComesBackIsNoGraze) {
+TEST_F(Harms, ReturnedBowelContentRulesOutAGraze) {
   HarmWatch watching = watch();
   watching.step(at({70.0, 40.7, 50.0}, 0.1));
   ASSERT_TRUE(watching.events()[0].is_graze);
@@ -140,7 +140,7 @@ TEST_F(Harms, WhatComesBackIsNoGraze) {
   EXPECT_EQ(watching.events()[0].grade, Harm::kCritical);
 }
 
-TEST_F(Harms, BloodThatRunsFromTheVeinBehindTheTipIsNoGraze) {
+TEST_F(Harms, BloodFromAVeinBehindTheTipKeepsTheGraze) {
   HarmWatch watching = watch();
   watching.step(at({90.0, 28.7, 50.0}, 0.1));
   ASSERT_EQ(watching.events().size(), 1U);
@@ -155,7 +155,7 @@ TEST_F(Harms, BloodThatRunsFromTheVeinBehindTheTipIsNoGraze) {
   EXPECT_EQ(watching.events()[0].grade, Harm::kMinor);
 }
 
-TEST_F(Harms, TremorDoesNotEndAStay) {
+TEST_F(Harms, TremorDoesNotEndAContact) {
   HarmWatch watching = watch();
   for (double y_mm = 0.0; y_mm < 40.0; y_mm += 0.2) watching.step(at({92.0, y_mm, 50.0}, y_mm / 20.0));
   for (double time_s = 2.0; time_s < 13.0; time_s += 0.01)  // to and fro by 0.6 mm, so that each moment is looked at
@@ -163,7 +163,7 @@ TEST_F(Harms, TremorDoesNotEndAStay) {
   EXPECT_TRUE(watching.events()[0].has_stayed);
 }
 
-TEST_F(Harms, TwoStructuresOfOneGradeSideBySideAreNoGraze) {
+TEST_F(Harms, AdjacentStructuresOfOneGradeAreNotGrazed) {
   patient_.label_table.labels.push_back({10, "stomach", "bowel", {}});
   const auto& geometry = patient_.labels.geometry;
   for (std::size_t n = 0; n < patient_.labels.voxels.size(); ++n)
@@ -174,7 +174,7 @@ TEST_F(Harms, TwoStructuresOfOneGradeSideBySideAreNoGraze) {
   EXPECT_FALSE(events[0].is_graze) << "half a voxel inside the stomach, but in the middle of bowel";
 }
 
-TEST_F(Harms, ANeedleThatStaysInAVeinIsWorse) {
+TEST_F(Harms, StayInAVeinRaisesTheGrade) {
   HarmWatch watching = watch();
   for (double y_mm = 0.0; y_mm < 40.0; y_mm += 0.2) watching.step(at({92.0, y_mm, 50.0}, y_mm / 20.0));
   for (double time_s = 2.0; time_s < 11.0; time_s += 0.1) watching.step(at({92.0, 40.0, 50.0}, time_s));
@@ -196,7 +196,7 @@ TEST_F(Harms, ANeedleThatStaysInAVeinIsWorse) {
   EXPECT_EQ(watching.present(), nullptr) << "the needle is outside";
 }
 
-TEST_F(Harms, TheNotchInAVeinIsWorseThanTheStylet) {
+TEST_F(Harms, NotchInAVeinIsWorseThanTheStylet) {
   // The throw is 22 mm, the notch lies 1 to 18 mm beyond the tip.
   const auto shot_from = [&](double y_mm) {
     HarmWatch watching = watch();
@@ -224,7 +224,7 @@ TEST_F(Harms, BoneStopsTheStylet) {
   EXPECT_FALSE(watching.events()[0].is_graze);
 }
 
-TEST_F(Harms, PressingOnAWallIsNoHarmButOnBoneIs) {
+TEST_F(Harms, PressingHarmsBoneButNotAWall) {
   Moment pressing = at({70.0, 43.0, 50.0});
   pressing.pressed_mm = 3.2;
   HarmWatch watching = watch();
@@ -255,7 +255,7 @@ TEST_F(Harms, AFastNeedleSkipsNothing) {
   EXPECT_TRUE(std::ranges::any_of(watching.events(), [](const auto& event) { return event.label == "colon"; }));
 }
 
-TEST_F(Harms, ValuesThatAreNotFiniteAreSkipped) {
+TEST_F(Harms, SkipNonFiniteValues) {
   HarmWatch watching = watch();
   Moment bad = at({70.0, 50.0, 50.0});
   bad.tip_P.x() = std::numeric_limits<double>::quiet_NaN();

@@ -24,7 +24,7 @@ MetricContext with_slice(double slice_mm, double width_mm = 100.0) {
   return context;
 }
 
-TEST(ImagingMetrics, AngleAndOffsetOfATiltedNeedle) {
+TEST(ImagingMetrics, MeasuresAngleAndOffsetOfATiltedNeedle) {
   // The needle is tilted by 10 degrees out of the plane and its tip is 4 mm beside it.
   const Recording recording = record(2.0, 100.0, [](double t, Moment& m) {
     set_depth(m, 10.0 + 5.0 * t);
@@ -39,7 +39,7 @@ TEST(ImagingMetrics, AngleAndOffsetOfATiltedNeedle) {
   EXPECT_NEAR(value_of(values, "plane_offset_end"), 4.0, 1e-9);
 }
 
-TEST(ImagingMetrics, MediansAreOverTime) {
+TEST(ImagingMetrics, WeightsMediansByTime) {
   // 1.2 s at 2 mm, 0.8 s at 9 mm beside the plane, with many more moments in the second part.
   Recording recording = record(1.2, 50.0, [](double, Moment& m) { set_depth(m, 20.0), m.tip_P.z() = 2.0; });
   Recording second = record(0.8, 1000.0, [](double, Moment& m) { set_depth(m, 20.0), m.tip_P.z() = 9.0; });
@@ -49,7 +49,7 @@ TEST(ImagingMetrics, MediansAreOverTime) {
   EXPECT_NEAR(measure_one("plane_offset", recording), 2.0, 0.03);
 }
 
-TEST(ImagingMetrics, ShareOfANeedleThatLeavesTheSlice) {
+TEST(ImagingMetrics, MeasuresTheShareOfTheNeedleInTheSlice) {
   // The needle crosses the slice of 2 mm at 5 degrees: the tip is in the middle; 1 mm / sin 5° of the shaft is inside.
   const double angle = 5.0 * pi / 180.0;
   const Recording recording = record(1.0, 200.0, [&](double, Moment& m) {
@@ -74,7 +74,7 @@ TEST(ImagingMetrics, TipIsVisibleInPartOfTheAdvance) {
   EXPECT_NEAR(measure_one("tip_visible", recording, with_slice(2.0, 0.0)), 75.0, 0.1);  // on the middle line
 }
 
-TEST(ImagingMetrics, FanHasABorderOfItsAngle) {
+TEST(ImagingMetrics, LimitsAFanByItsAngle) {
   ImagePlane plane;
   plane.radius_mm = 60.0;
   plane.field_of_view_rad = 1.0;
@@ -101,7 +101,7 @@ TEST(ImagingMetrics, SliceNarrowsToTheFocus) {
   EXPECT_EQ(plane.slice_at_mm(10.0), 2.0);
 }
 
-TEST(ImagingMetrics, ContactsAndTimeOfTheTransducer) {
+TEST(ImagingMetrics, CountsContactsAndTimeOfTheTransducer) {
   // On the skin from 1 to 3 s and from 5 to 6 s, with a gap of 0.1 s at 2 s; moved by 30 mm in between.
   const Recording recording = record(7.0, 1000.0, [](double t, Moment& m) {
     const bool is_on = (t >= 1.0 && t < 2.0) || (t >= 2.1 && t < 3.0) || (t >= 5.0 && t < 6.0);
@@ -115,7 +115,7 @@ TEST(ImagingMetrics, ContactsAndTimeOfTheTransducer) {
   EXPECT_NEAR(value_of(values, "transducer_path_raw"), 30.0, 1e-9);
 }
 
-TEST(ImagingMetrics, RadiationIsTheLastCounter) {
+TEST(ImagingMetrics, ReadsRadiationFromTheLastCounter) {
   const Recording recording = record(2.0, 100.0, [](double t, Moment& m) {
     tasks::XrayUse use;
     use.beam_s = 0.5 * t;
@@ -131,7 +131,7 @@ TEST(ImagingMetrics, RadiationIsTheLastCounter) {
   EXPECT_NEAR(value_of(values, "contrast_volume"), 8.0, 1e-12);
 }
 
-TEST(ImagingMetrics, SaysWhatIsMissing) {
+TEST(ImagingMetrics, NamesMissingInput) {
   Recording recording = record(1.0, 100.0, [](double t, Moment& m) { set_depth(m, 10.0 * t); });
   EXPECT_EQ(missing_of("plane_angle", recording), "the recording has no transducer");
   EXPECT_EQ(missing_of("beam_time", recording), "no X-ray was used");

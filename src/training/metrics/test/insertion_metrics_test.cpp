@@ -51,7 +51,7 @@ TEST(InsertionMetrics, VibrationAtALayerIsOnePuncture) {
   EXPECT_EQ(value_of(values, "skin_punctures"), 1.0);
 }
 
-TEST(InsertionMetrics, ALayerPuncturedAgainAfterAWithdrawalCountsTwice) {
+TEST(InsertionMetrics, CountsARepuncturedLayerTwice) {
   Recording recording = polyline({{0.0, -5.0}, {1.0, 30.0}, {2.0, 25.0}, {3.0, 30.0}});
   for (Moment& m : recording) m.events = telemetry::TickEvents{};
   add_event(recording[100], 1);
@@ -71,7 +71,7 @@ TEST(InsertionMetrics, CountsPassesAndPullBacks) {
   EXPECT_NEAR(value_of(values, "path_in_tissue_raw"), 40.0 + 5.0 + 15.0 + 30.0 + 30.0 + 50.0, 1e-6);
 }
 
-TEST(InsertionMetrics, TremorIsNoPullBack) {
+TEST(InsertionMetrics, TremorIsNotAPullBack) {
   const Recording recording = record(5.0, 1000.0, [](double t, Moment& m) {
     set_depth(m, std::min(40.0, 20.0 * t) + 0.45 * std::sin(2.0 * pi * 9.0 * t));
   });
@@ -98,7 +98,7 @@ TEST(InsertionMetrics, CountsRedirectionsOnceEachAtAnySpeed) {
   }
 }
 
-TEST(InsertionMetrics, PeaksAndOvershootOfPunctures) {
+TEST(InsertionMetrics, MeasuresPeaksAndOvershootOfPunctures) {
   // At 1 s, 20 mm deep, the skin gives way at 3 N and the tip falls by 6 mm in 0.2 s, then stops; at 3 s, 30 mm deep,
   // the capsule at 1.5 N, by 2 mm.
   Recording recording =
@@ -120,14 +120,14 @@ TEST(InsertionMetrics, PeaksAndOvershootOfPunctures) {
   EXPECT_NEAR(*find(values, "puncture_overshoot").at_s, 1.0, 1e-9);
 }
 
-TEST(InsertionMetrics, OvershootEndsWhenTheTipComesBack) {
+TEST(InsertionMetrics, OvershootEndsWhenTheTipReturns) {
   Recording recording = polyline({{0.0, 0.0}, {1.0, 20.0}, {1.1, 24.0}, {1.2, 22.0}, {1.4, 29.0}});
   for (Moment& m : recording) m.events = telemetry::TickEvents{};
   add_event(recording[100], 0);
   EXPECT_NEAR(measure_one("puncture_overshoot", recording, with_layers()), 4.0, 1e-9);
 }
 
-TEST(InsertionMetrics, SaysWhyThereIsNoForce) {
+TEST(InsertionMetrics, GivesTheReasonForMissingForces) {
   const Recording recording = polyline({{0.0, -5.0}, {1.0, 30.0}});
   EXPECT_EQ(missing_of("force_peak", recording), "the recording has no forces");
   EXPECT_EQ(missing_of("puncture_overshoot", recording), "the recording has no puncture events");

@@ -62,14 +62,14 @@ void expect_sound(const std::vector<MetricValue>& values) {
   }
 }
 
-TEST(MeasureRun, NoMomentHasNoValues) {
+TEST(MeasureRun, WithoutMomentsHasNoValues) {
   for (const auto& values : {measure({}, full_context()), measure({})}) {
     expect_sound(values);
     for (const MetricValue& value : values) EXPECT_EQ(value.missing, "the recording has no valid moment") << value.name;
   }
 }
 
-TEST(MeasureRun, OneMoment) {
+TEST(MeasureRun, HandlesOneMoment) {
   const auto values = measure({full_moment(2.0)}, full_context());
   expect_sound(values);
   EXPECT_EQ(value_of(values, "path_length"), 0.0);
@@ -79,7 +79,7 @@ TEST(MeasureRun, OneMoment) {
   EXPECT_FALSE(find(values, "spectral_arc_length").value);
 }
 
-TEST(MeasureRun, AFullRecordingHasAValueForEveryMetric) {
+TEST(MeasureRun, FullRecordingHasAValueForEveryMetric) {
   Recording recording;
   for (int n = 0; n < 300; ++n) recording.push_back(full_moment(0.01 * n));
   (*recording[150].events)[0] = {telemetry::EventKind::kPuncture, 0};
@@ -89,7 +89,7 @@ TEST(MeasureRun, AFullRecordingHasAValueForEveryMetric) {
   for (const MetricValue& value : values) EXPECT_TRUE(value.value) << value.name << ": " << value.missing;
 }
 
-TEST(MeasureRun, InvalidMomentsAreLeftOut) {
+TEST(MeasureRun, SkipsInvalidMoments) {
   Recording clean, spoilt;
   for (int n = 0; n < 200; ++n) {
     clean.push_back(full_moment(0.01 * n));
@@ -131,13 +131,13 @@ TEST(MeasureRun, InvalidOptionalPartsAreAbsent) {
     EXPECT_FALSE(find(values, name).value) << name;
 }
 
-TEST(MeasureRun, TimeThatStandsStillIsOneMoment) {
+TEST(MeasureRun, TreatsConstantTimeAsOneMoment) {
   const auto values = measure(Recording(500, full_moment(1.0)), full_context());
   expect_sound(values);
   EXPECT_EQ(value_of(values, "elapsed_time"), 0.0);
 }
 
-TEST(MeasureRun, HugeAndTinyNumbersGiveNoInfinities) {
+TEST(MeasureRun, StaysFiniteForHugeAndTinyNumbers) {
   Random random(5);
   for (int trial = 0; trial < 200; ++trial) {
     Recording recording;
@@ -160,7 +160,7 @@ TEST(MeasureRun, HugeAndTinyNumbersGiveNoInfinities) {
   }
 }
 
-TEST(MeasureRun, ExpertPathWithoutLengthIsNoDivision) {
+TEST(MeasureRun, HandlesAnExpertPathWithoutLength) {
   MetricContext context = full_context();
   context.expert_paths = {{"point", {Vec3(50, 10, 50), Vec3(50, 10, 50)}}};
   Recording recording;
@@ -170,7 +170,7 @@ TEST(MeasureRun, ExpertPathWithoutLengthIsNoDivision) {
   EXPECT_EQ(find(values, "path_angle").missing, "the expert path has no length");
 }
 
-TEST(MeasureRun, ReportsMayBeTakenDuringARecording) {
+TEST(MeasureRun, ReportsDuringARecording) {
   MeasureRun run(full_context());
   double last_mm = 0.0;
   for (int n = 0; n < 100; ++n) {

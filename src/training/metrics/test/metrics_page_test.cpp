@@ -41,7 +41,7 @@ const char* text_of(Better better) {
   return better == Better::kLower ? "lower" : better == Better::kHigher ? "higher" : "–";
 }
 
-TEST(MetricsPage, HasEveryMetricOfTheCatalogueAndNoOther) {
+TEST(MetricsPage, ListsExactlyTheMetricsOfTheCatalogue) {
   const fs::path source = testing::source_dir();
   auto rows = rows_of(text_of(source / "docs" / "metrics.md"));
   std::string tests;

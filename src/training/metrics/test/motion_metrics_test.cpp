@@ -19,7 +19,7 @@ double minimum_jerk(double share) {
   return u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
 }
 
-TEST(MotionMetrics, StraightMotionAtConstantSpeed) {
+TEST(MotionMetrics, MeasuresStraightMotionAtConstantSpeed) {
   // 20 mm/s along +y from 10 mm before the skin for 3 s: 60 mm, 50 mm and 2.5 s of them in the body.
   const Recording recording = record(3.0, 1000.0, [](double t, Moment& m) { set_depth(m, 20.0 * t - 10.0); });
   const auto values = measure(recording);
@@ -34,7 +34,7 @@ TEST(MotionMetrics, StraightMotionAtConstantSpeed) {
   EXPECT_NEAR(value_of(values, "jerk_rms"), 0.0, 1e-3);
 }
 
-TEST(MotionMetrics, TheBorderOfTheBodyIsFoundBetweenMoments) {
+TEST(MotionMetrics, InterpolatesTheSkinCrossing) {
   // 7 moments a second do not fall on the skin at t = 0.5 s.
   const Recording recording = record(3.0, 7.0, [](double t, Moment& m) { set_depth(m, 20.0 * t - 10.0); });
   const auto values = measure(recording);
@@ -43,7 +43,7 @@ TEST(MotionMetrics, TheBorderOfTheBodyIsFoundBetweenMoments) {
   EXPECT_NEAR(value_of(values, "time_in_tissue"), 2.5, 1e-9);
 }
 
-TEST(MotionMetrics, NoiseOfTheRecordingIsNoWay) {
+TEST(MotionMetrics, IgnoresRecordingNoiseInPathLength) {
   // 20 mm/s for 3 s, with 0.02 mm of noise on each axis at any rate: the raw value grows with the rate.
   std::mt19937_64 random(5);
   std::normal_distribution<double> noise_mm(0.0, 0.02);
@@ -88,7 +88,7 @@ TEST(MotionMetrics, SidewaysShiftSweepsARectangle) {
   EXPECT_NEAR(measure_one("tissue_damage", recording), 200.0, 1e-9);
 }
 
-TEST(MotionMetrics, TimeAndMotionOfAnInterruptionAreNotCounted) {
+TEST(MotionMetrics, ExcludesInterruptions) {
   Recording recording = record(1.0, 100.0, [](double t, Moment& m) { set_depth(m, 10.0 * t); });
   Moment after;
   set_depth(after, 60.0);
@@ -104,7 +104,7 @@ TEST(MotionMetrics, TimeAndMotionOfAnInterruptionAreNotCounted) {
   EXPECT_NEAR(value_of(values, "path_length"), 11.0, 1e-9);
 }
 
-TEST(MotionMetrics, AnInterruptionBeforeAnInvalidMomentIsNotForgotten) {
+TEST(MotionMetrics, KeepsAnInterruptionBeforeAnInvalidMoment) {
   Recording recording = record(1.0, 10.0, [](double t, Moment& m) { set_depth(m, 10.0 * t); });
   Moment after;
   after.time_s = std::nan("");
@@ -117,7 +117,7 @@ TEST(MotionMetrics, AnInterruptionBeforeAnInvalidMomentIsNotForgotten) {
   EXPECT_NEAR(measure_one("elapsed_time", recording), 1.0, 1e-9);
 }
 
-TEST(MotionMetrics, MinimumJerkMotionHasTheDimensionlessJerkOfTheory) {
+TEST(MotionMetrics, MinimumJerkMotionMatchesTheory) {
   // The integral of jerk² is 720 A²/D⁵, the peak speed 15/8 A/D: 720 (8/15)² = 204.8 for any size A and duration D.
   for (const double duration_s : {8.0, 16.0})
     for (const double rate_hz : {100.0, 1000.0}) {
@@ -132,7 +132,7 @@ TEST(MotionMetrics, MinimumJerkMotionHasTheDimensionlessJerkOfTheory) {
     }
 }
 
-TEST(MotionMetrics, SineHasTheJerkOfItsThirdDerivative) {
+TEST(MotionMetrics, SineJerkMatchesItsThirdDerivative) {
   // x = 10 mm sin(2 pi f t): the root mean square of the jerk is 10 (2 pi f)³/sqrt(2).
   const Recording recording =
       record(20.0, 1000.0, [](double t, Moment& m) { m.tip_P.x() = 10.0 * std::sin(2.0 * pi * 0.5 * t); });
@@ -140,7 +140,7 @@ TEST(MotionMetrics, SineHasTheJerkOfItsThirdDerivative) {
   EXPECT_NEAR(measure_one("jerk_rms", recording), wanted, 0.01 * wanted);
 }
 
-TEST(MotionMetrics, SpectralArcLengthOfAGaussianSpeed) {
+TEST(MotionMetrics, MeasuresSpectralArcLengthOfAGaussianSpeed) {
   // The spectrum of a Gaussian speed of width s is exp(-(2 pi f s)²/2); it falls to 0.05 at f = sqrt(2 ln 20)/(2 pi s).
   const double width_s = 0.4, period_s = 0.04;
   std::vector<double> speed;
@@ -172,7 +172,7 @@ TEST(MotionMetrics, SubmovementsAreLessSmoothThanOneMotion) {
   EXPECT_GT(value_of(one, "log_dimensionless_jerk"), value_of(three, "log_dimensionless_jerk") + 2.0);
 }
 
-TEST(MotionMetrics, SlowOrRestingRecordingsHaveNoSmoothness) {
+TEST(MotionMetrics, SlowRecordingsHaveNoSmoothness) {
   const auto slow = record(10.0, 5.0, [](double t, Moment& m) { m.tip_P.y() = 10.0 * minimum_jerk(t / 10.0); });
   EXPECT_EQ(missing_of("spectral_arc_length", slow), "fewer than 24 moments a second");
   const auto resting = record(2.0, 100.0, [](double, Moment& m) { m.tip_P.y() = 10.0; });

@@ -22,7 +22,7 @@ Recording straight_puncture(const Vec3& shift, double depth_mm, double rate_hz =
 
 const ExpertPath kStraight{"expert", {{0.0, 0.0, 0.0}, {0.0, 60.0, 0.0}}};
 
-TEST(PathMetrics, ParallelPathHasItsDistanceByEveryMeasure) {
+TEST(PathMetrics, EveryMeasureReportsAParallelOffset) {
   const auto values = measure(straight_puncture({3.0, 0.0, 4.0}, 60.0), with_paths({kStraight}));
   for (const char* name : {"target_distance", "entry_offset", "path_distance_mean", "path_distance_max", "targeting"})
     EXPECT_NEAR(value_of(values, name), 5.0, 1e-9) << name;
@@ -32,7 +32,7 @@ TEST(PathMetrics, ParallelPathHasItsDistanceByEveryMeasure) {
   EXPECT_NEAR(*find(values, "target_distance").at_s, 3.5, 1e-9);
 }
 
-TEST(PathMetrics, TooDeepIsOnThePathButBesideTheTarget) {
+TEST(PathMetrics, OvershootIsOnThePathButMissesTheTarget) {
   const auto values = measure(straight_puncture(Vec3::Zero(), 72.0), with_paths({kStraight}));
   EXPECT_NEAR(value_of(values, "target_distance"), 12.0, 1e-9);
   EXPECT_NEAR(value_of(values, "path_distance_max"), 12.0, 1e-9);
@@ -42,7 +42,7 @@ TEST(PathMetrics, TooDeepIsOnThePathButBesideTheTarget) {
   EXPECT_NEAR(value_of(values, "targeting"), 0.0, 1e-9);  // on the way it was there
 }
 
-TEST(PathMetrics, TiltedPathHasItsAngleAndHalfOfItsEndOffset) {
+TEST(PathMetrics, MeasuresAngleAndEndOffsetOfATiltedPath) {
   const double angle = 8.0 * std::numbers::pi / 180.0;
   const Vec3 axis_P(std::sin(angle), std::cos(angle), 0.0);
   const Recording recording = record(3.0, 200.0, [&](double t, Moment& m) {
@@ -58,7 +58,7 @@ TEST(PathMetrics, TiltedPathHasItsAngleAndHalfOfItsEndOffset) {
   EXPECT_NEAR(value_of(values, "frechet_distance"), 2.0 * 60.0 * std::sin(0.5 * angle), 0.05);
 }
 
-TEST(PathMetrics, FrechetTellsBackAndForthFromStraightWhereHausdorffDoesNot) {
+TEST(PathMetrics, OnlyFrechetDetectsBackAndForthMotion) {
   // To 40 mm, back to 10 mm, on to 60 mm: every point lies on the path (Hausdorff 0), but a leash of 15 mm is needed.
   const Recording recording = record(6.0, 200.0, [](double t, Moment& m) {
     set_depth(m, t < 2.0 ? 20.0 * t : t < 3.5 ? 40.0 - 20.0 * (t - 2.0) : 10.0 + 20.0 * (t - 3.5));
@@ -68,7 +68,7 @@ TEST(PathMetrics, FrechetTellsBackAndForthFromStraightWhereHausdorffDoesNot) {
   EXPECT_NEAR(value_of(values, "frechet_distance"), 15.0, 0.5);
 }
 
-TEST(PathMetrics, TheNearestOfSeveralExpertPathsCounts) {
+TEST(PathMetrics, UsesTheNearestExpertPath) {
   const ExpertPath far{"far", {{50.0, 0.0, 0.0}, {50.0, 60.0, 0.0}}};
   const ExpertPath near{"near", {{2.0, 0.0, 0.0}, {2.0, 60.0, 0.0}}};
   const auto values = measure(straight_puncture(Vec3::Zero(), 60.0), with_paths({far, near, kStraight}));
@@ -80,7 +80,7 @@ TEST(PathMetrics, TheNearestOfSeveralExpertPathsCounts) {
   EXPECT_NEAR(value_of(beside, "target_distance"), 0.1, 1e-9);
 }
 
-TEST(PathMetrics, TheShotIsTheEndEvenIfTheNeedleGoesDeeperLater) {
+TEST(PathMetrics, EndsAtTheShotDespiteLaterDepth) {
   MetricContext context = with_paths({kStraight});
   context.end_s = 2.0;
   const Recording recording = record(4.0, 100.0, [](double t, Moment& m) { set_depth(m, 20.0 * t); });
@@ -89,7 +89,7 @@ TEST(PathMetrics, TheShotIsTheEndEvenIfTheNeedleGoesDeeperLater) {
   EXPECT_NEAR(value_of(values, "hausdorff_distance"), 20.0, 0.1);
 }
 
-TEST(PathMetrics, OnlyTheInsertionWithTheEndIsCompared) {
+TEST(PathMetrics, ComparesOnlyTheFinalInsertion) {
   // First to 30 mm, 20 mm beside the path; then on the path to 60 mm; then 25 mm to the other side.
   Recording recording = straight_puncture({20.0, 0.0, 0.0}, 30.0);
   const auto add = [&](Recording more) {
@@ -108,7 +108,7 @@ TEST(PathMetrics, OnlyTheInsertionWithTheEndIsCompared) {
   EXPECT_EQ(value_of(values, "needle_passes"), 3.0);
 }
 
-TEST(PathMetrics, WithoutDepthTheEndIsTheApproachToTheTarget) {
+TEST(PathMetrics, WithoutDepthEndsAtTheClosestApproach) {
   Recording recording = straight_puncture({0.0, 0.0, 7.0}, 60.0);
   for (Moment& moment : recording) moment.depth_mm.reset();
   const auto values = measure(recording, with_paths({kStraight}));
@@ -124,7 +124,7 @@ TEST(PathMetrics, NeverInTheBodyHasNoEndPosition) {
   EXPECT_EQ(missing_of("target_distance", recording), "no expert path was given");
 }
 
-TEST(PathMetrics, CurveDistancesAreMetrics) {
+TEST(PathMetrics, CurveDistancesSatisfyMetricAxioms) {
   // Symmetry, identity, and Hausdorff <= Fréchet on arbitrary curves.
   std::vector<Vec3> a, b;
   for (int n = 0; n < 60; ++n) {
@@ -141,7 +141,7 @@ TEST(PathMetrics, CurveDistancesAreMetrics) {
   EXPECT_LE(detail::warped_mm(a1, b1), detail::frechet_mm(a1, b1));
 }
 
-TEST(PathMetrics, LongWaysKeepTheirMemoryBounded) {
+TEST(PathMetrics, BoundsMemoryForLongPaths) {
   detail::ThinPath path;
   for (int n = 0; n < 1000000; ++n) path.add({0.01 * n, 0.0, 0.0}, 0.001 * n);
   EXPECT_LE(path.points().size(), detail::ThinPath::kMostPoints);

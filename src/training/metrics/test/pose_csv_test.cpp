@@ -45,7 +45,7 @@ TEST_F(PoseCsv, ReadsNeedlePoses) {
   EXPECT_FALSE(all[0].depth_mm || all[0].X_PT || all[0].resistance_n || all[0].events || all[0].phase);
 }
 
-TEST_F(PoseCsv, ReadsMetresOtherOrderUnknownColumnsAndSpreadsheetHabits) {
+TEST_F(PoseCsv, ReadsMetresAnyColumnOrderAndSpreadsheetQuirks) {
   const auto all = moments(
       "\xEF\xBB\xBFoperator, axis_x,axis_y,axis_z,tip_z_m,tip_y_m,tip_x_m,time_s\r\n"
       "\"Doe, J.\", 0,0,1,0.003,0.002,0.001,7\r\n\r\n");
@@ -78,7 +78,7 @@ TEST_F(PoseCsv, ReadsTransducerForceDepthPhaseAndEvents) {
   EXPECT_EQ((*all[1].events)[0].id, 1);
 }
 
-TEST_F(PoseCsv, NamesLineAndColumnOfAFault) {
+TEST_F(PoseCsv, NamesLineAndColumnOfAnError) {
   const std::string header = kHeader;
   EXPECT_EQ(refused(""), "the file is empty");
   EXPECT_EQ(refused(header), "the table has no row of poses");
@@ -95,7 +95,7 @@ TEST_F(PoseCsv, NamesLineAndColumnOfAFault) {
             "line 3: column time_s: 1 s is before the line above (2 s)");
 }
 
-TEST_F(PoseCsv, RefusesWhatIsNoNumberNoPhaseAndNoEvent) {
+TEST_F(PoseCsv, RefusesInvalidNumbersPhasesAndEvents) {
   const std::string header = "time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,depth_mm,phase,event\n";
   struct Case {
     const char *row, *what;
@@ -159,7 +159,7 @@ TEST_F(PoseCsv, ReadsEveryEventOfASession) {
   EXPECT_EQ((*all[1].events)[0].kind, telemetry::EventKind::kPuncture);
 }
 
-TEST_F(PoseCsv, RefusesATurnThatIsNone) {
+TEST_F(PoseCsv, RefusesAnInvalidRotation) {
   EXPECT_EQ(refused("time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,probe_x_mm,probe_y_mm,probe_z_mm,probe_qw,"
                     "probe_qx,probe_qy,probe_qz\n0,0,0,0,0,0,1,0,0,0,2,0,0,0\n"),
             "line 2: column probe_qw: the quaternion's length is not 1");

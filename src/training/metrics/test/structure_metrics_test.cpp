@@ -33,7 +33,7 @@ Recording puncture_at(double x, double z, double depth_mm, double rate_hz = 500.
   });
 }
 
-TEST(StructureMetrics, DepthIsFoundInThePatient) {
+TEST(StructureMetrics, DerivesDepthFromThePatient) {
   const auto values = measure(puncture_at(50.0, 50.0, 60.0), in_box());
   EXPECT_NEAR(value_of(values, "depth_max"), 60.0, 0.1);
   EXPECT_NEAR(value_of(values, "path_in_tissue"), 60.0, 0.2);
@@ -49,7 +49,7 @@ TEST(StructureMetrics, PassesFatMuscleLiverAndTheLesion) {
   EXPECT_EQ(value_of(values, "no_go_time"), 0.0);
 }
 
-TEST(StructureMetrics, BesideTheLesionTheTargetIsNotReached) {
+TEST(StructureMetrics, MissesTheTargetBesideTheLesion) {
   EXPECT_EQ(measure_one("end_in_target", puncture_at(75.0, 50.0, 60.0), in_box()), 0.0);
   EXPECT_EQ(measure_one("end_in_target", puncture_at(50.0, 50.0, 40.0), in_box()), 0.0);
 }
@@ -97,7 +97,7 @@ TEST(StructureMetrics, CountsComplicationsButNoGrazes) {
   EXPECT_EQ(value_of(measure(puncture_at(50.0, 50.0, 40.0), in_box()), "complications"), 0.0);
 }
 
-TEST(StructureMetrics, BoneThatTheTipPressesOnIsTouched) {
+TEST(StructureMetrics, TipPressingOnBoneTouchesIt) {
   Recording recording = puncture_at(50.0, 75.0, 10.2);  // the rib is behind 10 mm
   for (Moment& moment : recording) moment.pressed_mm = std::max(0.0, moment.tip_P.y() - 9.9);
   const auto values = measure(recording, in_box());
@@ -106,7 +106,7 @@ TEST(StructureMetrics, BoneThatTheTipPressesOnIsTouched) {
   EXPECT_GT(value_of(values, "no_go_time"), 0.0);
 }
 
-TEST(StructureMetrics, TheShaftTouchesRisksToo) {
+TEST(StructureMetrics, ShaftTouchesRisks) {
   // Through the rib (z 70 to 80, behind 10 mm) with the tip far beyond it.
   Recording recording = record(1.0, 100.0, [](double, Moment& m) {
     m.tip_P = {50.0, 60.0, 75.0};
@@ -117,7 +117,7 @@ TEST(StructureMetrics, TheShaftTouchesRisksToo) {
   EXPECT_NEAR(value_of(values, "no_go_time"), 1.0, 1e-9);
 }
 
-TEST(StructureMetrics, FarTipsOfOtherSystemsAreMeasuredToo) {
+TEST(StructureMetrics, MeasuresDistantTipsOfOtherSystems) {
   const Recording recording = record(1.0, 100.0, [](double t, Moment& m) { m.tip_P = {1e6 * t, -1e6, 0.0}; });
   const auto values = measure(recording, in_box());
   EXPECT_EQ(value_of(values, "structures_pierced"), 0.0);

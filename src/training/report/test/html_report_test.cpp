@@ -54,7 +54,7 @@ TEST(HtmlReport, NamesTheThreePeaks) {
     EXPECT_NE(html.find(label), std::string::npos) << label;
 }
 
-TEST(HtmlReport, TellsTheLevelBesideTheScore) {
+TEST(HtmlReport, ShowsTheLevelBesideTheScore) {
   storage::Session session = example_attempt();
   EXPECT_EQ(html_report(session, nullptr).find("<dt>Level</dt>"), std::string::npos);
   session.info.level = "exam";
@@ -64,7 +64,7 @@ TEST(HtmlReport, TellsTheLevelBesideTheScore) {
   EXPECT_EQ(first_unbalanced(html), "");
 }
 
-TEST(HtmlReport, TellsScorePartsHintsAndCore) {
+TEST(HtmlReport, ShowsScorePartsHintsAndCore) {
   const std::string html = html_report(example_attempt(), nullptr);
   for (const char* text : {">83</text>", "Distance to the target", "Hold the needle flatter", "Target tissue 11.0 mm",
                            "target reached", "gallbladder", "not a medical device", "2026-01-02 03:04 UTC",
@@ -82,7 +82,7 @@ std::vector<std::size_t> places(const std::string& html, const std::vector<const
   return all;
 }
 
-TEST(HtmlReport, SaysPassedOrNotWithTheReasonsBeforeAllElse) {
+TEST(HtmlReport, ShowsTheVerdictWithReasonsFirst) {
   storage::Session session = example_attempt();
   session.outcome->is_passed = true;
   session.outcome->hints = {{"Well done: nothing at risk was touched.", {}}};
@@ -106,7 +106,7 @@ TEST(HtmlReport, SaysPassedOrNotWithTheReasonsBeforeAllElse) {
   EXPECT_EQ(first_unbalanced(html), "");
 }
 
-TEST(HtmlReport, AnAttemptWithoutAScoreHasNotPassed) {
+TEST(HtmlReport, ShowsAnUnscoredAttemptAsNotPassed) {
   storage::Session session = example_attempt();
   session.outcome->not_scored = "the skin was not pierced";
   const std::string html = html_report(session, nullptr);
@@ -114,12 +114,12 @@ TEST(HtmlReport, AnAttemptWithoutAScoreHasNotPassed) {
   EXPECT_EQ(html.find("of 100"), std::string::npos);
 }
 
-TEST(HtmlReport, AnOlderSessionHasNoVerdict) {
+TEST(HtmlReport, ShowsNoVerdictForAnOlderSession) {
   const std::string html = html_report(example_attempt(), nullptr);  // neither passed nor a reason against it
   places(html, {"<h2>No verdict</h2>", "older program"});
 }
 
-TEST(HtmlReport, OfManyInterruptionsTheLongestAreListed) {
+TEST(HtmlReport, ListsTheLongestOfManyInterruptions) {
   storage::Session session = testing::example_attempt();
   for (int n = 0; n < 8; ++n) session.interruptions.push_back({1.0 + n, 1.2 + n + 0.1 * (n % 4), "busy"});
   session.interruptions.push_back({20.0, 20.05, "busy"});
@@ -139,7 +139,7 @@ TEST(HtmlReport, ShortInterruptionsAreCounted) {
   EXPECT_EQ(count_of(html, "<th>Interruption</th>"), 1u);
 }
 
-TEST(HtmlReport, HasANameOfItsOwn) {
+TEST(HtmlReport, DerivesItsFileNameFromTheSession) {
   EXPECT_EQ(report_file_of("out/a.trocar"), "out/a.report.html");
   EXPECT_EQ(report_file_of("first.session"), "first.report.html");
 }
@@ -159,7 +159,7 @@ TEST(HtmlReport, NamesDamagedPartsAndDeductions) {
   EXPECT_EQ(without.find("This session is incomplete."), std::string::npos);
 }
 
-TEST(HtmlReport, IsOneFileThatLoadsNothing) {
+TEST(HtmlReport, IsSelfContained) {
   const anatomy::VirtualPatient patient = example_patient();
   const std::string html = html_report(example_attempt(), &patient);
   EXPECT_EQ(count_of(html, "<script"), 0u);
@@ -178,17 +178,17 @@ TEST(HtmlReport, ShowsThePathInThreeSlices) {
   EXPECT_EQ(html.find("has changed"), std::string::npos);
 }
 
-TEST(HtmlReport, SaysThatThePatientChanged) {
+TEST(HtmlReport, ReportsAChangedPatient) {
   anatomy::VirtualPatient patient = example_patient();
   patient.content_hash = "other";
   EXPECT_NE(html_report(example_attempt(), &patient).find("The patient has changed"), std::string::npos);
 }
 
-TEST(HtmlReport, SaysThatThePatientIsNotThere) {
+TEST(HtmlReport, ReportsAMissingPatient) {
   EXPECT_NE(html_report(example_attempt(), nullptr).find("not found"), std::string::npos);
 }
 
-TEST(HtmlReport, EscapesWhatPeopleWrote) {
+TEST(HtmlReport, EscapesUserText) {
   storage::Session session = example_attempt();
   const std::string evil = "<script>alert('x')</script>\"&";
   session.info.patient_name = session.info.task = session.info.operator_name = session.info.device = evil;
@@ -205,7 +205,7 @@ TEST(HtmlReport, EscapesWhatPeopleWrote) {
   EXPECT_EQ(first_unbalanced(html), "");
 }
 
-TEST(HtmlReport, IsWellFormedWhateverIsMissing) {
+TEST(HtmlReport, IsWellFormedWithAnyPartMissing) {
   const anatomy::VirtualPatient patient = example_patient();
   storage::Session whole = example_attempt();
   storage::Session no_outcome = whole;
@@ -234,7 +234,7 @@ TEST(HtmlReport, IsWellFormedWhateverIsMissing) {
   }
 }
 
-TEST(HtmlReport, SaysThatAKilledSessionIsIncompleteAndStillPlots) {
+TEST(HtmlReport, ReportsAnIncompleteSessionAndStillPlots) {
   storage::Session session = example_attempt();
   session.outcome.reset();
   session.shots.clear();
@@ -244,7 +244,7 @@ TEST(HtmlReport, SaysThatAKilledSessionIsIncompleteAndStillPlots) {
   EXPECT_EQ(count_of(html, "<svg class=\"plot\""), 5u);
 }
 
-TEST(HtmlReport, LeavesNumbersThatAreNoneOutOfThePlots) {
+TEST(HtmlReport, OmitsNonFiniteNumbersFromPlots) {
   storage::Session session = example_attempt();
   for (std::size_t i = 0; i < session.samples.size(); i += 3) {
     session.samples[i].f_friction_n = std::numeric_limits<double>::quiet_NaN();

@@ -19,7 +19,7 @@ bool is_nice(double step) {
   return std::abs(mantissa - 1) < 1e-6 || std::abs(mantissa - 2) < 1e-6 || std::abs(mantissa - 5) < 1e-6;
 }
 
-TEST(PlotScale, StepsAreNiceFewAndNotTooFew) {
+TEST(PlotScale, StepsAreRoundAndModerateInNumber) {
   Random random(3);
   for (int round = 0; round < 2000; ++round) {
     const double size = std::pow(10.0, random.uniform(-6.0, 6.0));
@@ -55,7 +55,7 @@ TEST(PlotScale, TicksAreAllMultiplesInsideTheRange) {
   }
 }
 
-TEST(PlotScale, NiceRangeHoldsTheRangeAndEndsOnTicks) {
+TEST(PlotScale, RoundedRangeContainsTheRangeAndEndsOnTicks) {
   for (const AxisRange range : {AxisRange{0.0, 2.81}, AxisRange{-1.3, 0.0}, AxisRange{0.0, 0.3}, AxisRange{-7, 12}}) {
     const double step = nice_step(range, 6);
     const AxisRange nice = nice_range(range, step);
@@ -68,7 +68,7 @@ TEST(PlotScale, NiceRangeHoldsTheRangeAndEndsOnTicks) {
   }
 }
 
-TEST(PlotScale, TicksReadAsTheirStepIs) {
+TEST(PlotScale, TickLabelsMatchTheirStep) {
   EXPECT_EQ(tick_text(0.5, 0.5), "0.5");
   EXPECT_EQ(tick_text(2.0, 0.5), "2.0");
   EXPECT_EQ(tick_text(20.0, 20.0), "20");
@@ -76,7 +76,7 @@ TEST(PlotScale, TicksReadAsTheirStepIs) {
   EXPECT_EQ(tick_text(0.0, 0.1), "0.0");
 }
 
-TEST(PlotScale, RangeOfNothingAndOfOneValueCanBeDrawn) {
+TEST(PlotScale, EmptyAndConstantRangesAreDrawable) {
   for (const std::vector<double>& values :
        {std::vector<double>{}, {kNaN}, {3.0}, {0.0, 0.0}, {-1e9, -1e9}, {1e-300}, {kNaN, 2.0}}) {
     const AxisRange range = range_of(values);
@@ -89,7 +89,7 @@ TEST(PlotScale, RangeOfNothingAndOfOneValueCanBeDrawn) {
   }
 }
 
-TEST(PlotScale, ThinningLosesNoPeakAndKeepsTheOrder) {
+TEST(PlotScale, ThinningKeepsPeaksAndOrder) {
   Random random(5);
   std::vector<Point2> line;
   for (int i = 0; i < 20000; ++i) line.emplace_back(0.02 * i, random.normal());
@@ -105,13 +105,13 @@ TEST(PlotScale, ThinningLosesNoPeakAndKeepsTheOrder) {
   EXPECT_EQ(thin.back(), line.back());
 }
 
-TEST(PlotScale, ThinningKeepsAShortLineWhole) {
+TEST(PlotScale, ThinningKeepsAShortLineUnchanged) {
   const std::vector<Point2> line{{0, 0}, {10, 3}, {5, 1}, {20, 2}};  // Also where it turns back.
   EXPECT_EQ(thin_out(line, 1.0), line);
   EXPECT_TRUE(thin_out({}, 1.0).empty());
 }
 
-TEST(PlotScale, LabelsDoNotOverlapAndStayWhereTheyMay) {
+TEST(PlotScale, LabelsMoveOnlyToAvoidOverlap) {
   const std::vector<double> wanted{10.0, 12.0, 14.0, 80.0, 99.0};
   const std::vector<double> widths{10.0, 10.0, 10.0, 10.0, 10.0};
   const auto centers = spread_labels(wanted, widths, {0.0, 100.0});

@@ -14,7 +14,7 @@ tasks::Phase phase(const std::string& name, tasks::Condition done, std::vector<s
 }
 
 // The example reaches 10 mm after 2 s and 40 mm, its end, after 5 s; it is over after 8 s.
-TEST(StepTimes, AreThoseOfTheRecording) {
+TEST(StepTimes, MatchTheRecording) {
   storage::Session session = testing::example_attempt();
   session.actions = {{1.5, tasks::ActionKind::kAnaesthetise, 5.0, {}, {}, 0.0}};
   tasks::Task task;

@@ -17,7 +17,7 @@ Plot two_curves() {
   return plot;
 }
 
-TEST(SvgFile, StandsAlone) {
+TEST(SvgFile, IsSelfContained) {
   const std::string file = to_svg_file(two_curves(), "Forces <1>");
   EXPECT_TRUE(file.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" width="));
   EXPECT_TRUE(file.ends_with("</svg>\n"));
@@ -29,7 +29,7 @@ TEST(SvgFile, StandsAlone) {
   EXPECT_EQ(file.find("a < b"), std::string::npos);
 }
 
-TEST(SvgFile, DrawsWhatThePageDraws) {
+TEST(SvgFile, MatchesThePlotInThePage) {
   const std::string in_page = to_svg(two_curves());
   const std::string file = to_svg_file(two_curves(), "");
   const auto from = in_page.find('>') + 1;

@@ -7,7 +7,7 @@
 namespace trocar::report {
 namespace {
 
-TEST(TextReport, HasTheOrderOfReading) {
+TEST(TextReport, FollowsReadingOrder) {
   storage::Session session = testing::example_attempt();
   session.outcome->fails = {"the lung was touched", "the score is below 90"};
   session.outcome->hints.push_back({"Advance more slowly.", 4.25});
@@ -32,7 +32,7 @@ TEST(TextReport, HasTheOrderOfReading) {
             "1 interruption shorter than 0.1 s, 0.00 s in total\n");
 }
 
-TEST(TextReport, SaysPassedNotScoredAndIncomplete) {
+TEST(TextReport, ReportsPassedNotScoredAndIncomplete) {
   storage::Session session = testing::example_attempt();
   session.outcome->is_passed = true;
   session.outcome->hints = {{"Well done: nothing at risk was touched.", {}}};

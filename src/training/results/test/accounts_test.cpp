@@ -20,7 +20,7 @@ TEST_P(Accounts, AreFoundByName) {
   EXPECT_EQ(list_accounts(*repository_)->size(), 1u);
 }
 
-TEST_P(Accounts, OfTheLastAdminStays) {
+TEST_P(Accounts, RefusesToRemoveTheLastAdmin) {
   ASSERT_TRUE(add_account(*repository_, "Eva", Role::kAdmin, "a", kNow));
   ASSERT_TRUE(add_account(*repository_, "Ben", Role::kInstructor, "b", kNow));
   EXPECT_FALSE(remove_account(*repository_, "Eva"));
@@ -30,7 +30,7 @@ TEST_P(Accounts, OfTheLastAdminStays) {
   EXPECT_TRUE(remove_account(*repository_, "Eva"));
 }
 
-TEST_P(Accounts, LoginsEndByTimeByNewPasswordAndWithTheAccount) {
+TEST_P(Accounts, LoginsEndByTimeNewPasswordOrRemoval) {
   const Account eva = *add_account(*repository_, "Eva", Role::kAdmin, "a", kNow);
   const Account ben = *add_account(*repository_, "Ben", Role::kAdmin, "b", kNow);
   const auto add_login = [&](const std::string& token, Seconds begun, const Account& account) {

@@ -12,7 +12,7 @@ namespace {
 class AttemptsCsv : public ResultsTest {};
 TROCAR_BOTH_DATABASES(AttemptsCsv);
 
-TEST(CsvText, ComesBackAndIsNoFormula) {
+TEST(CsvText, RoundTripsAndIsNeverAFormula) {
   for (const std::string text :
        {"plain", "a,b", "say \"a\"", "two\nlines", "=1+1", "-5", "@x", "'apostrophe", "\ttab", ""}) {
     const std::string field = csv_text(text);
@@ -25,7 +25,7 @@ TEST(CsvText, ComesBackAndIsNoFormula) {
   }
 }
 
-TEST(CsvText, FaultsAreNamedWithLineAndField) {
+TEST(CsvText, ErrorsNameLineAndField) {
   struct Case {
     std::string text;
     const char* error;
@@ -46,7 +46,7 @@ TEST(CsvText, FaultsAreNamedWithLineAndField) {
   EXPECT_EQ(rows->at(1).line, 4u);
 }
 
-TEST_P(AttemptsCsv, ComeBackIntoAnotherDatabase) {
+TEST_P(AttemptsCsv, RoundTripsIntoAnotherDatabase) {
   const Person anna = add("=cmd|' /C calc'!A0", Group::kTrainee, "Course, 1"), eva = add("Eva", Group::kExpert);
   const AttemptRecord written = attempt(anna.id, 71.125);
   put(written);
@@ -86,7 +86,7 @@ TEST_P(AttemptsCsv, ComeBackIntoAnotherDatabase) {
   ASSERT_TRUE(export_attempts(*other, {}, again));
 }
 
-TEST_P(AttemptsCsv, OfEveryStateComeBackUnchanged) {
+TEST_P(AttemptsCsv, RoundTripsEveryState) {
   const Person anna = add("Anna");
   for (const State state :
        {State::kInterrupted, State::kUnscored, State::kNeverBegan, State::kFinished, State::kRunning}) {
@@ -117,7 +117,7 @@ TEST_P(AttemptsCsv, OfEveryStateComeBackUnchanged) {
   EXPECT_EQ(attempts_csv(*other, {}).value(), written);
 }
 
-TEST_P(AttemptsCsv, ReadOverAnInterruptedAttemptKeepItsRecording) {
+TEST_P(AttemptsCsv, ImportKeepsTheRecordingOfAnInterruptedAttempt) {
   const Person anna = add("Anna");
   AttemptRecord cut = attempt(anna.id, 0.0);
   cut.attempt.state = State::kInterrupted;
@@ -145,7 +145,7 @@ TEST_P(AttemptsCsv, ReadOverAnInterruptedAttemptKeepItsRecording) {
   EXPECT_EQ(find_attempt(*repository_, cut.attempt.id)->value().score, 64.0);
 }
 
-TEST_P(AttemptsCsv, OfAnOlderProgramSayFinishedWithoutAScore) {
+TEST_P(AttemptsCsv, ReadsUnscoredAttemptsOfOlderPrograms) {
   const Person anna = add("Anna");
   AttemptRecord record = attempt(anna.id, 50.0);
   record.measures = {{"skin_punctures", "1", 1.0}};
@@ -160,7 +160,7 @@ TEST_P(AttemptsCsv, OfAnOlderProgramSayFinishedWithoutAScore) {
   EXPECT_FALSE(list_attempts(*other, {})->front().is_passed);
 }
 
-TEST_P(AttemptsCsv, WithABadRowChangeNothing) {
+TEST_P(AttemptsCsv, ChangesNothingOnABadRow) {
   const Person anna = add("Anna");
   put(attempt(anna.id, 50.0));
   const auto good = attempts_csv(*repository_, {});
@@ -202,7 +202,7 @@ TEST_P(AttemptsCsv, ARowThatContradictsThePersonIsRefused) {
   }
 }
 
-TEST_P(AttemptsCsv, EveryKindOfFaultIsNamedWithItsLineAndColumn) {
+TEST_P(AttemptsCsv, NamesLineAndColumnOfEveryError) {
   const Person anna = add("Anna");
   put(attempt(anna.id, 50.0));
   const auto good = attempts_csv(*repository_, {});

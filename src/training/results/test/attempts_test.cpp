@@ -10,7 +10,7 @@ namespace {
 class Attempts : public ResultsTest {};
 TROCAR_BOTH_DATABASES(Attempts);
 
-TEST_P(Attempts, ComeBackAsTheyWereWritten) {
+TEST_P(Attempts, RoundTrip) {
   const Person anna = add("Anna");
   AttemptRecord written = attempt(anna.id, 72.25);
   std::string recording;
@@ -48,14 +48,14 @@ TEST_P(Attempts, ComeBackAsTheyWereWritten) {
   EXPECT_EQ(**bytes, recording);
 }
 
-TEST_P(Attempts, OfNobodyAreRefused) {
+TEST_P(Attempts, AreRefusedWithoutAPerson) {
   const auto refused = record_attempt(*repository_, attempt("nobody", 50.0), {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().what, "no such person");
   EXPECT_TRUE(list_attempts(*repository_, {})->empty());
 }
 
-TEST_P(Attempts, AreCompletedOnceAndThenStay) {
+TEST_P(Attempts, AreCompletedOnlyOnce) {
   const Person anna = add("Anna");
   AttemptRecord record = attempt(anna.id, 72.0);
   Attempt begun = record.attempt;
@@ -81,7 +81,7 @@ TEST_P(Attempts, AreCompletedOnceAndThenStay) {
   EXPECT_EQ(load_attempt(*repository_, record.attempt.id)->value().measures.size(), 2u);
 }
 
-TEST_P(Attempts, ThatOnlyBeganAreForgotten) {
+TEST_P(Attempts, AreForgottenOnlyIfUnfinished) {
   const Person anna = add("Anna");
   AttemptRecord record = attempt(anna.id, 72.0), begun = attempt(anna.id, 0.0);
   put(record);
@@ -165,7 +165,7 @@ TEST_P(Attempts, AreSummarisedByPersonAndTask) {
   EXPECT_EQ(of_anna.recent_mean, (30.0 + 40.0 + 90.0 + 60.0 + 70.0) / 5.0);
 }
 
-TEST_P(Attempts, GiveValuesOfAMetricWithTheirGroup) {
+TEST_P(Attempts, ListMetricValuesWithTheirGroup) {
   const Person anna = add("Anna", Group::kTrainee, "A"), eva = add("Eva", Group::kExpert);
   put(attempt(anna.id, 40.0));
   put(attempt(eva.id, 95.0));
@@ -199,7 +199,7 @@ TEST_P(Attempts, FindTheBestExpertOnTheSameCase) {
   EXPECT_EQ(**find_expert_attempt(*repository_, mine.attempt), better.attempt.id);
 }
 
-TEST_P(Attempts, OfTwoStationsAtOnceAreAllThere) {
+TEST_P(Attempts, AreAllRecordedFromTwoStationsAtOnce) {
   const Person anna = add("Anna");
   constexpr int kEach = 25;
   std::vector<Status> done(2);
@@ -218,7 +218,7 @@ TEST_P(Attempts, OfTwoStationsAtOnceAreAllThere) {
   EXPECT_EQ(list_attempts(*repository_, {})->size(), 2u * kEach);
 }
 
-TEST_P(Attempts, OfTheSameSessionFromTwoStationsAreOne) {
+TEST_P(Attempts, AreRecordedOnceFromTwoStations) {
   const Person anna = add("Anna");
   const AttemptRecord record = attempt(anna.id, 50.0);
   {
@@ -242,7 +242,7 @@ TEST_P(Attempts, AreDeletedOneByOne) {
   EXPECT_FALSE(load_recording(*repository_, record.attempt.id)->has_value());
 }
 
-TEST(AttemptsFile, TenThousandAreFoundByPageAndSummarised) {
+TEST(AttemptsFile, PagesAndSummarisesTenThousandAttempts) {
   TemporaryFolder folder;
   auto repository = Repository::open({folder / "a.sqlite", {}});
   ASSERT_TRUE(repository);
@@ -273,7 +273,7 @@ TEST(AttemptsFile, TenThousandAreFoundByPageAndSummarised) {
   EXPECT_EQ((*summaries)[0].best_score, 100.0);
 }
 
-TEST(AttemptsFile, LoseNothingOnAFullDisk) {
+TEST(AttemptsFile, LosesNothingOnAFullDisk) {
   TemporaryFolder folder;
   auto repository = Repository::open({folder / "a.sqlite", {}});
   ASSERT_TRUE(repository);

@@ -37,7 +37,7 @@ TEST_P(Courses, AreRemovedOnlyWithoutPeople) {
   EXPECT_TRUE(names().empty());
 }
 
-TEST_P(Courses, AChangeOfAPersonIsWholeOrNone) {
+TEST_P(Courses, ChangeAPersonAtomically) {
   const Person anna = add("Anna", Group::kTrainee, "Spring");
   add("Ben");
   EXPECT_FALSE(change_person(*repository_, anna.id, {"ben", Group::kExpert, "Autumn"}));
@@ -58,7 +58,7 @@ TEST_P(Courses, AChangeOfAPersonIsWholeOrNone) {
   EXPECT_EQ(find_person(*repository_, anna.id).value()->name, "Cleo");
 }
 
-TEST_P(Courses, PeopleMoveTogetherOrNobodyDoes) {
+TEST_P(Courses, MovePeopleAtomically) {
   const Person anna = add("Anna"), ben = add("Ben");
   EXPECT_FALSE(move_people(*repository_, {anna.id, make_id()}, "Spring"));
   EXPECT_TRUE(names().empty());

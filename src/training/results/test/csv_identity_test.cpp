@@ -65,7 +65,7 @@ void expect_no_formula(const std::string& row, std::string_view separators) {
   }
 }
 
-TEST(CsvText, OfAnyKindComesBackAndIsNoFormulaWhateverSeparates) {
+TEST(CsvText, RoundTripsHostileTextForAnySeparator) {
   HostileTexts texts(11);
   for (int round = 0; round < 5000; ++round) {
     const std::string first = texts.next(), second = texts.next();
@@ -82,7 +82,7 @@ TEST(CsvText, OfAnyKindComesBackAndIsNoFormulaWhateverSeparates) {
   }
 }
 
-TEST(CsvText, IsReadInPiecesOfAnySize) {
+TEST(CsvText, ParsesChunksOfAnySize) {
   const std::string text =
       "\xef\xbb\xbf"
       "a,\"b\"\"c\nd\"\r\n\r\n\"\",e\n";
@@ -100,7 +100,7 @@ TEST(CsvText, IsReadInPiecesOfAnySize) {
   }
 }
 
-TEST(CsvText, OfARowThatNeverEndsIsRefused) {
+TEST(CsvText, RefusesAnEndlessRow) {
   CsvReader quotation([]() -> Result<std::string> { return "\"" + std::string(1 << 20, 'x'); }, "file");
   EXPECT_FALSE(quotation.next());
   CsvReader fields([]() -> Result<std::string> { return std::string(1 << 20, ','); }, "file");
@@ -141,7 +141,7 @@ class CsvIdentity : public ResultsTest {
 };
 TROCAR_BOTH_DATABASES(CsvIdentity);
 
-TEST_P(CsvIdentity, OfHostileTexts) {
+TEST_P(CsvIdentity, HoldsForHostileTexts) {
   HostileTexts texts(23);
   std::vector<Person> people{add("=cmd|' /C calc'!A0;=1", Group::kTrainee, "-1;=2")};
   for (int n = 0; people.size() < 12; ++n) {
@@ -162,7 +162,7 @@ TEST_P(CsvIdentity, OfHostileTexts) {
   expect_identity();
 }
 
-TEST_P(CsvIdentity, OfAVeryLongText) {
+TEST_P(CsvIdentity, HoldsForAVeryLongText) {
   AttemptRecord record = attempt(add("Anna").id, 50.0);
   record.attempt.station.assign(1'000'000, ';');
   record.attempt.station += "=1";
@@ -170,7 +170,7 @@ TEST_P(CsvIdentity, OfAVeryLongText) {
   expect_identity();
 }
 
-TEST_P(CsvIdentity, IsKeptByRefusingWhatNoFileCanHold) {
+TEST_P(CsvIdentity, RefusesValuesThatCsvCannotHold) {
   const Person anna = add("Anna");
   const auto refused = [&](auto change) {
     AttemptRecord record = attempt(anna.id, 50.0);
@@ -188,7 +188,7 @@ TEST_P(CsvIdentity, IsKeptByRefusingWhatNoFileCanHold) {
   EXPECT_EQ(list_attempts(*repository_, {})->size(), 1u);
 }
 
-TEST_P(CsvIdentity, OfPiecesHasEveryAttemptOnce) {
+TEST_P(CsvIdentity, StreamedExportHasEveryAttemptOnce) {
   const Person anna = add("Anna"), ben = add("Ben");
   std::vector<AttemptRecord> records;
   for (int n = 0; n < 1203; ++n) {
@@ -204,7 +204,7 @@ TEST_P(CsvIdentity, OfPiecesHasEveryAttemptOnce) {
 }
 
 /// A deletion while a slow client reads: what was not sent yet is gone.
-TEST_P(CsvIdentity, OfAnExportEndsWithTheDeletionOfItsPerson) {
+TEST_P(CsvIdentity, ExportStopsWhenItsPersonIsDeleted) {
   const Person anna = add("Anna");
   put(attempt(anna.id, 50.0));
   AttemptsExport attempts = AttemptsExport::begin(*repository_, {}).value();
@@ -213,7 +213,7 @@ TEST_P(CsvIdentity, OfAnExportEndsWithTheDeletionOfItsPerson) {
   EXPECT_EQ(attempts.next(*repository_).value(), "");
 }
 
-TEST_P(CsvIdentity, IsNotPretendedIfAColumnIsMissing) {
+TEST_P(CsvIdentity, ExportFailsOnAMeasureWithoutAColumn) {
   const Person anna = add("Anna");
   AttemptRecord record = attempt(anna.id, 50.0);
   ASSERT_TRUE(begin_attempt(*repository_, record.attempt));

@@ -8,7 +8,7 @@ namespace {
 class LearningCurveTest : public SmallStudy {};
 TROCAR_BOTH_DATABASES(LearningCurveTest);
 
-TEST_P(LearningCurveTest, HasTheAttemptsOfAPersonInTheOrderOfRecording) {
+TEST_P(LearningCurveTest, ListsAttemptsInRecordingOrder) {
   const Person person = add("Novice", Group::kTrainee);
   play(person, 40.0);
   play(person, 58.0);
@@ -34,7 +34,7 @@ TEST_P(LearningCurveTest, HasTheAttemptsOfAPersonInTheOrderOfRecording) {
   EXPECT_EQ(curve->peers, 0u);
 }
 
-TEST_P(LearningCurveTest, ComparesWithRealExpertsAndPeersOfTheSameKind) {
+TEST_P(LearningCurveTest, ComparesWithRealExpertsAndSimilarPeers) {
   const Person person = add("Novice", Group::kTrainee);
   const Person peer = add("Peer", Group::kTrainee);
   const Person simulated = add_simulated("simulated novice 1", Group::kTrainee);
@@ -77,7 +77,7 @@ TEST_P(LearningCurveTest, WithoutAttemptsIsEmpty) {
   EXPECT_TRUE(curve->peer_curve.empty());
 }
 
-TEST_P(LearningCurveTest, RefusesRulesThatAreNone) {
+TEST_P(LearningCurveTest, RefusesInvalidRules) {
   const Person person = add("Novice", Group::kTrainee);
   EXPECT_EQ(learning_curve(*repository_, person, "liver-biopsy", {0, {}}).error().exit_status, 2);
   EXPECT_EQ(learning_curve(*repository_, person, "liver-biopsy", {5, {0.5, 0.2, 0.1, 0.1}}).error().exit_status, 2);

@@ -39,7 +39,7 @@ class Deletion : public ::testing::Test {
 
 constexpr const char* kName = "Unmistakable Name";
 
-TEST_F(Deletion, TakesAPersonOutOfTheLog) {
+TEST_F(Deletion, ErasesAPersonFromTheLog) {
   const Person person = add(kName, "Unmistakable Course");
   ASSERT_TRUE(is_anywhere(kName));
   const auto deleted = delete_person(*repository_, person.id);
@@ -48,7 +48,7 @@ TEST_F(Deletion, TakesAPersonOutOfTheLog) {
     EXPECT_FALSE(is_anywhere(text)) << text;
 }
 
-TEST_F(Deletion, TakesAPersonOutOfTheFile) {
+TEST_F(Deletion, ErasesAPersonFromTheFile) {
   const Person person = add(kName, "Unmistakable Course");
   checkpoint();
   ASSERT_TRUE(delete_person(*repository_, person.id)->is_erased);
@@ -57,7 +57,7 @@ TEST_F(Deletion, TakesAPersonOutOfTheFile) {
 }
 
 /// Pages that were split and merged by many people before and after.
-TEST_F(Deletion, LeavesNoCopyOfAnyOfManyPeople) {
+TEST_F(Deletion, ErasesManyPeopleCompletely) {
   std::vector<Person> people;
   for (int n = 0; n < 600; ++n) people.push_back(add(fmt::format("Person with a name {:04}", (n * 7919) % 10000)));
   for (int n = 0; n < 600; n += 3)
@@ -72,7 +72,7 @@ TEST_F(Deletion, LeavesNoCopyOfAnyOfManyPeople) {
   EXPECT_TRUE(is_anywhere(people[1].name));
 }
 
-TEST_F(Deletion, TakesAccountsAndQuestionnairesOut) {
+TEST_F(Deletion, ErasesAccountsAndQuestionnaires) {
   ASSERT_TRUE(add_account(*repository_, "Eva", Role::kAdmin, "hash", Seconds()));
   ASSERT_TRUE(add_account(*repository_, kName, Role::kInstructor, "hash", Seconds()));
   ASSERT_TRUE(remove_account(*repository_, kName));
@@ -86,7 +86,7 @@ TEST_F(Deletion, TakesAccountsAndQuestionnairesOut) {
 }
 
 /// A program that reads an older state needs the log: the data are erased when it has ended.
-TEST_F(Deletion, IsCompletedWhenOthersHaveEnded) {
+TEST_F(Deletion, CompletesWhenOtherReadersEnd) {
   const Person person = add(kName);
   auto other = Repository::open({folder_ / "a.sqlite", {}});
   ASSERT_TRUE(other);
@@ -102,7 +102,7 @@ TEST_F(Deletion, IsCompletedWhenOthersHaveEnded) {
   EXPECT_FALSE(is_anywhere(kName));
 }
 
-TEST_F(Deletion, ChangesTheKeyOfTheLastOne) {
+TEST_F(Deletion, UpdatesTheIdOfTheLastDeletion) {
   EXPECT_EQ(last_deletion(*repository_).value(), "");
   ASSERT_TRUE(delete_person(*repository_, add("A").id));
   const std::string first = last_deletion(*repository_).value();

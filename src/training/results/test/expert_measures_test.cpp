@@ -11,7 +11,7 @@ namespace {
 class MeasuresOfExperts : public SmallStudy {};
 TROCAR_BOTH_DATABASES(MeasuresOfExperts);
 
-TEST_P(MeasuresOfExperts, AreThoseOfRealExpertsIfThereAreAny) {
+TEST_P(MeasuresOfExperts, PreferRealExperts) {
   play(add_simulated("Simulated expert", Group::kExpert), 90.0);
   play(add("Trainee"), 10.0);
   const auto values_of = [this] {
@@ -40,7 +40,7 @@ TEST_P(MeasuresOfExperts, AreThoseOfRealExpertsIfThereAreAny) {
   EXPECT_TRUE(expert_measures(*repository_, "unknown").value().empty());
 }
 
-TEST_P(MeasuresOfExperts, AndSummariesOfOnePersonAreThoseOfAll) {
+TEST_P(MeasuresOfExperts, MatchWhenFilteredByPerson) {
   const Person a = add("A"), b = add("B");
   for (const double score : {50.0, 60.0, 90.0}) play(a, score);
   play(b, 10.0);

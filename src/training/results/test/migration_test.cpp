@@ -67,7 +67,7 @@ class Migration : public ResultsTest {
 };
 TROCAR_BOTH_DATABASES(Migration);
 
-TEST_P(Migration, TellsAttemptsWithoutAResultFromThoseThatNeverBegan) {
+TEST_P(Migration, DistinguishesUnscoredFromUnstartedAttempts) {
   make_old();
   if (HasFatalFailure()) return;
   Repository repository = open();

@@ -14,7 +14,7 @@ namespace {
 class Notes : public ResultsTest {};
 TROCAR_BOTH_DATABASES(Notes);
 
-TEST_P(Notes, AreKeptInTheOrderOfWritingWithAuthorAndTime) {
+TEST_P(Notes, KeepWritingOrderAuthorAndTime) {
   const AttemptRecord one = attempt(add("Anna").id, 50.0);
   put(one);
   const std::string hostile = "'; DROP TABLE notes; --\n<b>ü</b>";
@@ -36,7 +36,7 @@ TEST_P(Notes, AreKeptInTheOrderOfWritingWithAuthorAndTime) {
   EXPECT_EQ(list_notes(*repository_, one.attempt.id)->size(), 1U);
 }
 
-TEST_P(Notes, ADeletionIsSeenByOthersAndLeavesNoBytes) {
+TEST_P(Notes, DeletionIsVisibleToOthersAndErasesTheBytes) {
   const AttemptRecord one = attempt(add("Anna").id, 50.0);
   put(one);
   const std::string text = "unmistakable text";
@@ -90,7 +90,7 @@ TEST_P(Notes, AreCountedExportedAndDeletedWithThePerson) {
   EXPECT_EQ(list_notes(*repository_, other.attempt.id)->size(), 1U);
 }
 
-TEST_P(Notes, ReasonsAreListedOfAttemptsThatDidNotPass) {
+TEST_P(Notes, ListReasonsOfFailedAttempts) {
   const Person anna = add("Anna"), ben = add("Ben");
   const std::int64_t passed = put(attempt(anna.id, 90.0)), failed = put(attempt(anna.id, 40.0));
   put(attempt(ben.id, 40.0));
@@ -108,7 +108,7 @@ TEST_P(Notes, ReasonsAreListedOfAttemptsThatDidNotPass) {
   EXPECT_EQ(list_reasons(*repository_, anna.id, failed, failed)->size(), 1U);
 }
 
-TEST_P(Notes, ADamagedAttemptDoesNotHideTheReasonsOfOthers) {
+TEST_P(Notes, DamagedAttemptDoesNotHideOtherReasons) {
   const Person anna = add("Anna");
   const std::int64_t damaged = put(attempt(anna.id, 40.0)), whole = put(attempt(anna.id, 40.0));
   ASSERT_TRUE(repository_->database().transaction("cannot be damaged", [&](soci::session& session) {

@@ -8,7 +8,7 @@ namespace {
 class People : public ResultsTest {};
 TROCAR_BOTH_DATABASES(People);
 
-TEST_P(People, AreFoundByNameWithoutRegardToCaseAndBlanks) {
+TEST_P(People, AreFoundByNameIgnoringCaseAndBlanks) {
   const Person anna = add("  Anna   Müller ", Group::kExpert, "Radiology 2026");
   EXPECT_EQ(anna.name, "Anna Müller");
   const auto found = get_person_named(*repository_, "anna MüLLER");
@@ -85,7 +85,7 @@ TEST_P(People, AreDeletedWithAllTheirData) {
   EXPECT_FALSE(delete_person(*repository_, anna.id));
 }
 
-TEST_P(People, ShowTheirPinOnceItIsRight) {
+TEST_P(People, AcceptACorrectPin) {
   const Person anna = add("Anna");
   EXPECT_EQ(*check_pin(*repository_, anna.id, "", kNow), PinCheck::kRight);  // none is set
   EXPECT_FALSE(set_pin(*repository_, anna.id, "12a4"));
@@ -108,7 +108,7 @@ TEST_P(People, MustWaitAfterManyWrongPins) {
   EXPECT_EQ(*check_pin(*repository_, anna.id, "2718", back + std::chrono::seconds(31)), PinCheck::kRight);
 }
 
-TEST_P(People, NeedPinsOnlyWhereTheDepartmentWantsThem) {
+TEST_P(People, NeedPinsOnlyIfRequired) {
   EXPECT_FALSE(*are_pins_required(*repository_));
   ASSERT_TRUE(require_pins(*repository_, true));
   EXPECT_TRUE(*are_pins_required(*repository_));

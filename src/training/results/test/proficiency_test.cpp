@@ -36,7 +36,7 @@ class ProficiencyTest : public SmallStudy {
 };
 TROCAR_BOTH_DATABASES(ProficiencyTest);
 
-TEST_P(ProficiencyTest, CountsTrialsAndThoseWhoAreNotThereYet) {
+TEST_P(ProficiencyTest, CountsTrialsAndPeopleBelowTheCriterion) {
   play_all(add("Anna"), "fppp");          // 4
   play_all(add("Ben"), "ppupwppp");       // 8: neither an attempt without a result nor a low pass
   play_all(add("Clara"), "npcpfffffff");  // not yet, after 9
@@ -62,7 +62,7 @@ TEST_P(ProficiencyTest, CountsTrialsAndThoseWhoAreNotThereYet) {
   EXPECT_EQ(groups->back().trials.median, 3.0);
 }
 
-TEST_P(ProficiencyTest, EachPersonCountsOnceInTheMeans) {
+TEST_P(ProficiencyTest, MeansWeightEachPersonOnce) {
   play_all(add("Anna"), "p");
   play_all(add("Ben"), "ffffffffu");
   const GroupProficiency group = trainees({"liver-biopsy"});
@@ -71,7 +71,7 @@ TEST_P(ProficiencyTest, EachPersonCountsOnceInTheMeans) {
   EXPECT_DOUBLE_EQ(*group.time_to_target_s, 15.0);
 }
 
-TEST_P(ProficiencyTest, OfACaseALevelACourseAndOwnRules) {
+TEST_P(ProficiencyTest, FiltersByCaseLevelCourseAndRules) {
   const Person anna = add("Anna", Group::kTrainee, "Spring");
   play_all(anna, "fff", "guided");
   play_all(anna, "wppp", "exam");
@@ -85,7 +85,7 @@ TEST_P(ProficiencyTest, OfACaseALevelACourseAndOwnRules) {
   EXPECT_EQ(proficiency_of(*repository_, {"liver-biopsy"}, {80.0, 0}).error().exit_status, 2);
 }
 
-TEST_P(ProficiencyTest, SimulatedPeopleAreAGroupOfTheirOwn) {
+TEST_P(ProficiencyTest, GroupsSimulatedPeopleSeparately) {
   play_all(add_simulated("Robot", Group::kTrainee), "ppp");
   play_all(add("Anna"), "fff");
   const auto groups = proficiency_of(*repository_, {"liver-biopsy"});
@@ -117,7 +117,7 @@ TEST_P(ProficiencyTest, AddsTheMinutesOfInstructors) {
   EXPECT_TRUE(teaching_minutes(*repository_, "ptcd").value().empty());
 }
 
-TEST_P(ProficiencyTest, RefusesMinutesThatNobodyCanHaveSpent) {
+TEST_P(ProficiencyTest, RefusesImplausibleMinutes) {
   const Person anna = add("Anna");
   for (const double minutes : {0.0, -5.0, 601.0, std::nan(""), HUGE_VAL})
     EXPECT_FALSE(add_teaching(*repository_, anna.id, "liver-biopsy", minutes, {})) << minutes;

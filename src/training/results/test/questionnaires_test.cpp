@@ -48,7 +48,7 @@ TEST_P(Questionnaires, GiveMeansPerItem) {
   EXPECT_NE(csv->find(",1,2,3,2,"), std::string::npos);
 }
 
-TEST_P(Questionnaires, RefuseWhatIsNoAnswer) {
+TEST_P(Questionnaires, RefuseInvalidAnswers) {
   const Form form = add_default();
   for (const std::vector<int>& points : {std::vector<int>{1, 2, 3}, {1, 2, 3, 7}, {1, 2, 3, -1}, {}}) {
     const Status refused = answer(form, points);
@@ -62,7 +62,7 @@ TEST_P(Questionnaires, RefuseWhatIsNoAnswer) {
   EXPECT_EQ(find_form(*repository_, form.id)->value().responses, 1);
 }
 
-TEST_P(Questionnaires, TakeARepeatedResponseOnce) {
+TEST_P(Questionnaires, CountARepeatedResponseOnce) {
   const Form form = add_default();
   const std::string id = make_id();
   ASSERT_TRUE(answer(form, {1, 1, 1, 1}, "a", id));
@@ -81,7 +81,7 @@ TEST_P(Questionnaires, AreClosedToAnswers) {
   EXPECT_FALSE(answer(form, {1, 1, 1, 1}));
 }
 
-TEST_P(Questionnaires, NeverChangeTheWordsOfAnAnsweredItem) {
+TEST_P(Questionnaires, NeverChangeTheTextOfAnAnsweredItem) {
   Form form = add_default();
   // Without answers an item is changed in place.
   form.items[0].text = "Training with the simulator is useful for me.";

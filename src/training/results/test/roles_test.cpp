@@ -28,7 +28,7 @@ class Roles : public ::testing::Test {
   database::testing::PostgresServer::Roles roles_;
 };
 
-TEST_F(Roles, OfTheWriterCannotMakeTables) {
+TEST_F(Roles, WriterCannotCreateTables) {
   const auto made = Repository::open(roles_.writer);
   ASSERT_FALSE(made);
   EXPECT_NE(made.error().text().find("the user may not do this"), std::string::npos) << made.error().text();
@@ -37,7 +37,7 @@ TEST_F(Roles, OfTheWriterCannotMakeTables) {
   EXPECT_TRUE(Repository::open(roles_.writer));
 }
 
-TEST_F(Roles, OfTheWriterChangeRowsAlone) {
+TEST_F(Roles, WriterCanOnlyChangeRows) {
   ASSERT_TRUE(Repository::open(roles_.owner));
   EXPECT_TRUE(run(roles_.writer, "DELETE FROM people"));
   for (const char* statement :
@@ -66,7 +66,7 @@ TEST_F(Roles, AreKeptByAnUpdate) {
 }
 
 /// A database that another user has made is taken over.
-TEST_F(Roles, AreGivenToADatabaseThatIsThere) {
+TEST_F(Roles, AreGrantedOnAnExistingDatabase) {
   const database::DatabaseUrl made = server_->make_database();
   {
     auto administrator = Repository::open(made);

@@ -106,7 +106,7 @@ TEST_P(Sessions, BecomeAttemptsWithPathForcesAndRecording) {
   EXPECT_FALSE(export_session(*repository_, written.attempt_id, back));  // never over a file
 }
 
-TEST_P(Sessions, LeftOnAStationAreRecordedAtTheNextStart) {
+TEST_P(Sessions, LeftOnAStationAreImportedAtTheNextStart) {
   const Person anna = add("Anna");
   const fs::path folder = folder_ / "sessions";
   fs::create_directory(folder);
@@ -128,7 +128,7 @@ TEST_P(Sessions, LeftOnAStationAreRecordedAtTheNextStart) {
   EXPECT_EQ(list_attempts(*repository_, {})->size(), 2u);
 }
 
-TEST_P(Sessions, WithoutAScoreCountIfTheNeedleWasInTheBody) {
+TEST_P(Sessions, CountWithoutAScoreIfTheNeedleWasInTheBody) {
   const Person anna = add("Anna");
   const auto state_with = [&](double punctures, const std::string& reason) {
     const fs::path file = folder_ / (make_id() + ".session");
@@ -156,7 +156,7 @@ TEST_P(Sessions, WithoutAScoreCountIfTheNeedleWasInTheBody) {
   EXPECT_FALSE(past->back().is_practice());
 }
 
-TEST_P(Sessions, OfAKilledProgramLackAtMostTheLastHalfSecond) {
+TEST_P(Sessions, LoseAtMostHalfASecondWhenKilled) {
   const Person anna = add("Anna");
   const fs::path file = folder_ / "killed.session";
   const storage::SessionInfo written = info(anna.id);
@@ -183,7 +183,7 @@ TEST_P(Sessions, OfAKilledProgramLackAtMostTheLastHalfSecond) {
 }
 
 // On a network drive: neither the session nor the database has a write-ahead log.
-TEST_P(Sessions, AreRecordedWhereThereIsNoLog) {
+TEST_P(Sessions, AreRecordedWithoutAWriteAheadLog) {
   const fs::path file = folder_ / "killed.session", kept = folder_ / "drive.sqlite";
   const database::testing::OtherFileSystem other(database::testing::SharedMemory::kFails);
   auto repository = Repository::open({kept, {}});
@@ -212,7 +212,7 @@ TEST_P(Sessions, AreRecordedWhereThereIsNoLog) {
   EXPECT_EQ(session->samples.size(), 1500u);
 }
 
-TEST_P(Sessions, OfNobodyNeedAPerson) {
+TEST_P(Sessions, NeedAPersonOnImport) {
   const fs::path file = folder_ / "a.session";
   write(file, {}, true);
   const auto refused = import_session(*repository_, file, {}, curriculum());
@@ -222,7 +222,7 @@ TEST_P(Sessions, OfNobodyNeedAPerson) {
   EXPECT_TRUE(import_session(*repository_, file, anna.id, curriculum()));
 }
 
-TEST_P(Sessions, OfOlderProgramsKeepTheirKey) {
+TEST_P(Sessions, OfOlderProgramsAreImportedOnce) {
   const Person anna = add("Anna");
   const fs::path file = folder_ / "old.session";
   storage::SessionInfo old = info({});

@@ -132,7 +132,7 @@ TEST_P(TwoStations, RecordTheSameAttemptOnce) {
 
 /// The sums of what each station says it has added are right, whoever is first, and people in another order do not
 /// end an import.
-TEST_P(TwoStations, CountWhatEachOfThemHasAdded) {
+TEST_P(TwoStations, CountOnlyTheirOwnAdditions) {
   std::vector<AttemptRecord> records;
   for (int n = 0; n < 40; ++n) records.push_back(attempt(add(fmt::format("Person {:02}", n)).id, 50.0));
   ASSERT_TRUE(record_attempts(*repository_, records));

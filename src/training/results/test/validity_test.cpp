@@ -10,7 +10,7 @@ TROCAR_BOTH_DATABASES(CohortDataTest);
 class ValidityTest : public SmallStudy {};
 TROCAR_BOTH_DATABASES(ValidityTest);
 
-TEST_P(CohortDataTest, HasTheMeansOfEachPerson) {
+TEST_P(CohortDataTest, AveragesEachPerson) {
   const Person expert = add("Expert", Group::kExpert), novice = add_simulated("Novice", Group::kTrainee);
   add("Without attempts", Group::kTrainee);
   play(novice, 20.0);
@@ -57,7 +57,7 @@ TEST_P(CohortDataTest, ChoosesAttemptsOfEachPerson) {
   EXPECT_EQ(second_and_third->metrics[0].values[0].has_value(), true);
 }
 
-TEST_P(CohortDataTest, OfACaseAndALevelHasItsAttemptsAlone) {
+TEST_P(CohortDataTest, FiltersByCaseAndLevel) {
   const Person novice = add("Novice", Group::kTrainee, "Spring");
   const auto put_at = [&](const std::string& patient, const std::string& level, double score) {
     AttemptRecord record = attempt(novice.id, score);
@@ -86,7 +86,7 @@ TEST_P(CohortDataTest, OfACaseAndALevelHasItsAttemptsAlone) {
   EXPECT_EQ(count_attempts(*repository_, {{}, "liver-biopsy", {}, "biopsy-2", "exam"})->counted(), 2);
 }
 
-TEST_P(CohortDataTest, AnAttemptWithoutAResultIsNoEvidenceOfSuccess) {
+TEST_P(CohortDataTest, CountsAttemptsWithoutAResultAsFailed) {
   const Person expert = add("Expert", Group::kExpert), novice = add("Novice", Group::kTrainee);
   for (int n = 0; n < 3; ++n) play(expert, 90.0);
   play(novice, 95.0);
@@ -103,7 +103,7 @@ TEST_P(CohortDataTest, AnAttemptWithoutAResultIsNoEvidenceOfSuccess) {
   EXPECT_DOUBLE_EQ(validity->passes.separation->novice_median, 1.0 / 3.0);
 }
 
-TEST_P(CohortDataTest, OfACourseHasItsPeopleAlone) {
+TEST_P(CohortDataTest, FiltersByCourse) {
   play(add("A", Group::kTrainee, "Spring"), 50.0);
   play(add("B", Group::kTrainee, "Autumn"), 70.0);
   const auto data = cohort_data(*repository_, {"liver-biopsy", "spring"});
@@ -113,7 +113,7 @@ TEST_P(CohortDataTest, OfACourseHasItsPeopleAlone) {
   EXPECT_TRUE(cohort_data(*repository_, {"liver-biopsy", "Winter"})->people.empty());
 }
 
-TEST_P(ValidityTest, OfAStudyInTheDatabase) {
+TEST_P(ValidityTest, EvaluatesAStudyInTheDatabase) {
   for (const double score : {95.0, 92.0}) play(add(fmt::format("E{}", score), Group::kExpert), score);
   for (int n = 0; n < 12; ++n) play(add(fmt::format("N{}", n), Group::kTrainee), 30.0 + 3.0 * n);
   const auto validity = validity_of(*repository_, {"liver-biopsy"});
@@ -129,7 +129,7 @@ TEST_P(ValidityTest, OfAStudyInTheDatabase) {
   EXPECT_EQ(validity->pass_mark->false_fails + validity->pass_mark->false_passes, 0u);
 }
 
-TEST_P(CohortDataTest, LeavesOutSimulatedPeopleWhereBothGroupsAreReal) {
+TEST_P(CohortDataTest, ExcludesSimulatedPeopleIfBothGroupsAreReal) {
   play(add_simulated("simulated expert 1", Group::kExpert), 100.0);
   play(add_simulated("simulated novice 1", Group::kTrainee), 10.0);
   play(add("Novice", Group::kTrainee), 50.0);
@@ -145,7 +145,7 @@ TEST_P(CohortDataTest, LeavesOutSimulatedPeopleWhereBothGroupsAreReal) {
   EXPECT_EQ(data->items.size(), 2u);
 }
 
-TEST_P(ValidityTest, OfAnUnknownTaskHasNobody) {
+TEST_P(ValidityTest, IsEmptyForAnUnknownTask) {
   const auto validity = validity_of(*repository_, {"'; DROP TABLE people; --"});
   ASSERT_TRUE(validity) << validity.error().text();
   EXPECT_EQ(validity->experts + validity->novices, 0u);

@@ -27,7 +27,7 @@ TEST(TakeCore, NamesThePiecesAlongTheNotch) {
   EXPECT_TRUE(core.risks_in_throw.empty());
 }
 
-TEST(TakeCore, LengthsAddUpToTheNotchWhereverItIsTaken) {
+TEST(TakeCore, LengthsSumToTheNotch) {
   const anatomy::VirtualPatient patient = make_box_patient();
   for (int i = 0; i < 200; ++i) {
     const Vec3 tip_P(10.0 + 0.37 * i, -20.0 + 0.6 * i, 15.0 + 0.4 * i);
@@ -65,7 +65,7 @@ TEST(TakeCore, BoneStopsTheStylet) {
   EXPECT_EQ(none.risks_in_throw, std::vector<std::string>{"rib_right_9"});
 }
 
-TEST(TakeCore, TakesTheOrganAsTargetWhereThereIsNoLesion) {
+TEST(TakeCore, TreatsTheOrganAsTargetWithoutALesion) {
   const anatomy::VirtualPatient patient = make_box_patient(false);
   const BiopsyCore core = take_core(make_box_task(), patient, make_gun(), {50.0, 40.0, 50.0}, Vec3::UnitY());
   EXPECT_NEAR(core.target_mm, 17.0, 1e-9);

@@ -52,7 +52,7 @@ double share(const Outcome& outcome, const std::string& name) {
   return part(outcome, name).points / part(outcome, name).max_points;
 }
 
-TEST(Cores, OneOfTwoIsWorthHalf) {
+TEST(Cores, OneOfTwoScoresHalf) {
   Punctures once = punctures_along({kPlan_P});
   const Outcome one = score_of_punctures(once, make_core_task(2), true);
   EXPECT_NEAR(share(one, "core"), 0.5, 1e-9);
@@ -68,13 +68,13 @@ TEST(Cores, OneOfTwoIsWorthHalf) {
   EXPECT_TRUE(has_hint(two, "Well done"));
 }
 
-TEST(Cores, AMissingOneIsNamedBesideABadOne) {
+TEST(Cores, HintNamesAMissingCoreBesideABadOne) {
   const Outcome outcome = score_of_punctures(punctures_along({kBesideLesion_P}), make_core_task(2), true);
   EXPECT_TRUE(has_hint(outcome, "1 of 2 cores was taken"));
   EXPECT_GT(outcome.hints.size(), 1u) << "what was wrong with it, too";
 }
 
-TEST(Cores, AFullCoreBesideTheMiddleOfTheTargetIsNotCalledMissed) {
+TEST(Cores, OffCentreFullCoreIsNotReportedAsMissed) {
   const Outcome outcome = score_of_punctures(punctures_along({shifted({5.0, 0.0, 0.0})}), make_core_task(1), true);
   EXPECT_GT(share(outcome, "core"), 0.8);
   EXPECT_LT(share(outcome, "core"), 1.0);
@@ -83,7 +83,7 @@ TEST(Cores, AFullCoreBesideTheMiddleOfTheTargetIsNotCalledMissed) {
   EXPECT_FALSE(has_hint(outcome, "holds only"));
 }
 
-TEST(Cores, TheBestOnesCount) {
+TEST(Cores, BestCoresCount) {
   const Punctures three = punctures_along({kBesideLesion_P, kPlan_P, kPlan_P});
   const Outcome outcome = score_of_punctures(three, make_core_task(2), true);
   ASSERT_EQ(outcome.cores.size(), 3u);
@@ -94,13 +94,13 @@ TEST(Cores, TheBestOnesCount) {
   EXPECT_EQ(outcome.best_core()->target_mm, outcome.cores[1].target_mm);
 }
 
-TEST(Cores, AShotOutsideTheBodyTakesNone) {
+TEST(Cores, ShotOutsideTheBodyTakesNoCore) {
   Punctures once = punctures_along({kPlan_P});
   once.shots = {0, once.shots.front(), once.samples.size() + 7};
   EXPECT_EQ(score_of_punctures(once, make_core_task(1), true).cores.size(), 1u);
 }
 
-TEST(Passes, EachNeedlessOneCosts) {
+TEST(Passes, EachUnnecessaryPassCostsPoints) {
   const Punctures two = punctures_along({kPlan_P, kPlan_P});
   EXPECT_NEAR(share(score_of_punctures(two, make_core_task(2), false), "passes"), 1.0, 1e-9) << "one a core";
   EXPECT_NEAR(share(score_of_punctures(two, make_core_task(2), true), "passes"), 0.5, 1e-9)
@@ -122,7 +122,7 @@ TEST(Bleeding, IsUsualAfterOnePunctureAndRaisedAfterMany) {
   EXPECT_NE(often.bleeding->reasons[0].find("punctured 3 times"), std::string::npos);
 }
 
-TEST(Bleeding, ATremblingTipAtTheSurfaceIsOnePuncture) {
+TEST(Bleeding, TremorAtTheSurfaceIsOnePuncture) {
   Punctures once = punctures_along({kPlan_P});
   for (std::size_t n = 0; n < once.samples.size(); ++n) once.samples[n].tip_mm.y() += n % 2 == 0 ? 0.5 : -0.5;
   EXPECT_EQ(score_of_punctures(once, make_core_task(1), true).bleeding->passes, 1u);
@@ -146,13 +146,13 @@ Outcome score_with(const anatomy::VirtualPatient& patient) {
   return made.score(once.samples, once.shots);
 }
 
-TEST(Bleeding, AnotherLesionOnTheWayThroughTheOrganIsInIt) {
+TEST(Bleeding, LesionWithinTheOrganIsNotANewPass) {
   EXPECT_EQ(score_with(patient_with("livertumor2", "liver_lesion", 30.0)).bleeding->passes, 1u);
   EXPECT_EQ(score_with(patient_with("liver_cyst", "fluid", 30.0)).bleeding->passes, 1u);
   EXPECT_EQ(score_with(patient_with("gallbladder", "gallbladder", 30.0)).bleeding->passes, 2u);
 }
 
-TEST(Bleeding, AnOrganThatBleedsIsAReason) {
+TEST(Bleeding, BleedingOrganIsAReason) {
   anatomy::VirtualPatient patient = patient_with("spleen", "spleen", 12.0);
   BoxCase made{.task = make_core_task(1), .who = &patient};
   made.task.risks.push_back({"spleen", "", 5.0, false, tasks::Harm::kCritical});
@@ -188,14 +188,14 @@ TEST(Bleeding, IsHighAfterAVesselWasHit) {
   EXPECT_NE(outcome.bleeding->reasons.at(0).find("hit a vessel"), std::string::npos);
 }
 
-TEST(Bleeding, IsNotGradedWhereTheTargetIsAFluid) {
+TEST(Bleeding, IsNotGradedForAFluidTarget) {
   tasks::Task task = make_core_task(1);
   task.min_organ_path_mm = 0.0;
   const Outcome outcome = score_of_punctures(punctures_along({kPlan_P}), task, true);
   EXPECT_FALSE(outcome.bleeding);
 }
 
-TEST(Bleeding, NamesComeBack) {
+TEST(Bleeding, RiskNamesRoundTrip) {
   for (const BleedingRisk risk : {BleedingRisk::kUsual, BleedingRisk::kRaised, BleedingRisk::kHigh})
     EXPECT_EQ(find_bleeding_risk(to_string(risk)), risk);
   EXPECT_FALSE(find_bleeding_risk("huge"));

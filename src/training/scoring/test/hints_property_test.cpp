@@ -227,7 +227,7 @@ std::string contradiction_in(const Outcome& outcome) {
   return {};
 }
 
-TEST(HintsProperty, AdviceMakesSenseWhateverWasMeasured) {
+TEST(HintsProperty, AdviceIsConsistentForRandomOutcomes) {
   const std::vector<Subject> subjects = shipped();
   ASSERT_EQ(subjects.size(), 4U);
   std::size_t praised = 0, advised = 0;

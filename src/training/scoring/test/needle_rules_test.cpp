@@ -28,7 +28,7 @@ bool has_fail(const Outcome& outcome, const std::string& words) {
                              [&](const std::string& fail) { return fail.find(words) != std::string::npos; });
 }
 
-TEST(HighestEntry, EnteringTheTargetAboveTheStructureFailsWithTheReason) {
+TEST(HighestEntry, EntryAboveTheStructureFailsWithTheReason) {
   BoxCase made = make_liver_puncture();
   made.task.highest_entry = tasks::EntryLevel{"rib_right_9", "the needle went in too high"};
   const auto at_height = [&](double z_mm) { return made.score(make_attempt({{50.0, 0.0, z_mm}, {50.0, 51.0, z_mm}})); };
@@ -71,7 +71,7 @@ TEST(Bevel, IsJudgedAtThePunctureOfItsLayer) {
   EXPECT_FALSE(has_hint(points_at(0.0), "bevel"));
 }
 
-TEST(Access, TellsTheWayBackIntoTheEntryZone) {
+TEST(Access, AdvisesTheDirectionToTheEntryZone) {
   BoxCase made = make_liver_puncture();
   made.task.entry_zone = tasks::EntryZone{{50.0, 0.0, 78.0}, 10.0};
   made.task.entry_tolerance_mm = 9.0;

@@ -47,7 +47,7 @@ class Phases : public ::testing::Test {
   double contact_n_ = 2.0;
 };
 
-TEST_F(Phases, OpenOneAfterAnotherAndStayDone) {
+TEST_F(Phases, OpenInOrderAndStayDone) {
   add("touch", {{ConditionKind::kTipOnSkin, 0.0, {}}});
   add("deep", {{ConditionKind::kInserted, 40.0, {}}}, {"touch"});
   add("out", {{ConditionKind::kOutside, 0.0, {}}}, {"deep"});
@@ -68,7 +68,7 @@ TEST_F(Phases, OpenOneAfterAnotherAndStayDone) {
   EXPECT_FALSE(tracked.current());
 }
 
-TEST_F(Phases, TheBevelHasToFaceAcrossTheFibres) {
+TEST_F(Phases, RequireTheBevelAcrossTheFibres) {
   const std::vector<tasks::Condition> turned{{ConditionKind::kBevelToFibres, 30.0, {}}};
   const auto with_bevel = [&](const Vec3& face_P) {
     PhaseMoment moment = at(0.0, {50.0, 0.0, 50.0});
@@ -86,7 +86,7 @@ TEST_F(Phases, TheBevelHasToFaceAcrossTheFibres) {
   EXPECT_FALSE(is_done_by(turned, with_bevel(Vec3::UnitZ())));
 }
 
-TEST_F(Phases, AreRepeatedWithThoseThatFollow) {
+TEST_F(Phases, RepeatingOneResetsThoseThatFollow) {
   add("touch", {{ConditionKind::kTipOnSkin, 0.0, {}}});
   add("deep", {{ConditionKind::kInserted, 40.0, {}}}, {"touch"});
   PhaseTracker tracked = tracker();
@@ -99,7 +99,7 @@ TEST_F(Phases, AreRepeatedWithThoseThatFollow) {
   EXPECT_EQ(tracked.current(), 0U);
 }
 
-TEST_F(Phases, ARepeatedOneIsNotDoneByWhatWasDoneBefore) {
+TEST_F(Phases, RepeatedPhaseIgnoresEarlierActions) {
   const auto action = [](double time_s, ActionKind kind, double amount) {
     return tasks::Action{time_s, kind, amount, {}, Vec3(50.0, 0.0, 50.0), 0.0};
   };
@@ -136,7 +136,7 @@ TEST_F(Phases, ARepeatedOneIsNotDoneByWhatWasDoneBefore) {
   for (std::size_t n = 0; n < 5; ++n) EXPECT_TRUE(tracked.states()[n].done_s) << n;
 }
 
-TEST_F(Phases, AnaestheticIntoTheAirIsNone) {
+TEST_F(Phases, AnaestheticInTheAirDoesNotCount) {
   add("numb", {{ConditionKind::kAnaesthetised, 0.0, {}}});
   PhaseTracker tracked = tracker();
   tracked.note({0.0, ActionKind::kAnaesthetise, 5.0, {}, Vec3(50.0, -20.0, 50.0), 0.0});
@@ -148,7 +148,7 @@ TEST_F(Phases, AnaestheticIntoTheAirIsNone) {
   EXPECT_TRUE(tracked.states()[0].done_s);
 }
 
-TEST_F(Phases, AWallThatIsOnlyPressedHidesWhatIsBehindIt) {
+TEST_F(Phases, UnpiercedWallHidesTheTissueBehindIt) {
   PhaseMoment pressed = at(0.0, {50.0, 53.0, 50.0});
   const std::vector<tasks::Condition> in_lesion{{ConditionKind::kTipIn, 0.0, "liver_lesion"}};
   EXPECT_TRUE(is_done_by(in_lesion, pressed));
@@ -158,7 +158,7 @@ TEST_F(Phases, AWallThatIsOnlyPressedHidesWhatIsBehindIt) {
   EXPECT_FALSE(is_done_by({{ConditionKind::kPassed, 0.0, "liver_lesion"}}, pressed));
 }
 
-TEST_F(Phases, RememberWhatThisInsertionPassed) {
+TEST_F(Phases, RememberTissuesPassedInThisInsertion) {
   add("muscle", {{ConditionKind::kPassed, 0.0, "muscle"}});
   add("lesion", {{ConditionKind::kPassed, 0.0, "liver_lesion"}});
   add("either", {{ConditionKind::kPassed, 0.0, "csf|muscle|bone"}});
@@ -173,7 +173,7 @@ TEST_F(Phases, RememberWhatThisInsertionPassed) {
   EXPECT_FALSE(tracked.states()[1].done_s);
 }
 
-TEST_F(Phases, ATargetInTheShadowOfARibIsNotSeen) {
+TEST_F(Phases, TargetInARibShadowIsNotVisible) {
   // The rib is at z from 70 to 80, behind 10 mm.
   const std::vector<tasks::Condition> tip_seen{{ConditionKind::kTipInImage, 3.0, {}}};
   X_PT_ = Pose(Mat3::Identity(), Vec3(50.0, 0.0, 75.0));
@@ -182,7 +182,7 @@ TEST_F(Phases, ATargetInTheShadowOfARibIsNotSeen) {
   EXPECT_TRUE(is_done_by(tip_seen, at(0.0, {50.0, 40.0, 60.0})));
 }
 
-TEST_F(Phases, HaveToHoldForTheirTime) {
+TEST_F(Phases, RequireConditionsToHoldForTheirTime) {
   add("hold", {{ConditionKind::kTipOnSkin, 0.0, {}}}, {}, 0.5);
   PhaseTracker tracked = tracker();
   tracked.step(at(0.0, {50.0, 0.0, 50.0}));
@@ -195,7 +195,7 @@ TEST_F(Phases, HaveToHoldForTheirTime) {
   EXPECT_TRUE(tracked.states()[0].done_s);
 }
 
-TEST_F(Phases, SeeTheTargetOnlyWithATransducerOnTheSkin) {
+TEST_F(Phases, TargetIsVisibleOnlyWithTransducerContact) {
   const std::vector<tasks::Condition> seen{{ConditionKind::kTargetInImage, 3.0, {}}};
   EXPECT_TRUE(is_done_by(seen, at(0.0, {50.0, -9.0, 50.0})));
   X_PT_ = Pose(Mat3::Identity(), Vec3(40.0, 0.0, 54.0));  // 4 mm beside the plane
@@ -217,7 +217,7 @@ TEST_F(Phases, MeasureAngleAndOffsetToThePlane) {
   EXPECT_FALSE(is_done_by(in_plane, at(0.0, {50.0, 10.0, 54.5})));
 }
 
-TEST_F(Phases, KnowAClearWay) {
+TEST_F(Phases, DetectAClearPath) {
   const std::vector<tasks::Condition> clear{{ConditionKind::kPathClear, 2.0, {}}};
   EXPECT_TRUE(is_done_by(clear, at(0.0, {50.0, 0.0, 50.0})));
   EXPECT_FALSE(is_done_by(clear, at(0.0, {22.0, 0.0, 50.0}))) << "through the vessel";
@@ -225,7 +225,7 @@ TEST_F(Phases, KnowAClearWay) {
   EXPECT_TRUE(is_done_by({{ConditionKind::kPathClear, 0.0, {}}}, at(0.0, {26.0, 0.0, 50.0})));
 }
 
-TEST_F(Phases, FollowActionsAndWhatComesBack) {
+TEST_F(Phases, FollowActionsAndReturnedFluid) {
   add("touch", {{ConditionKind::kTipOnSkin, 0.0, {}}});
   add("bile", {{ConditionKind::kReturned, 0.0, "bile"}, {ConditionKind::kStyletDrawn, 0.0, {}}}, {"touch"});
   PhaseTracker tracked = tracker();
@@ -248,7 +248,7 @@ TEST_F(Phases, FollowActionsAndWhatComesBack) {
   EXPECT_FALSE(tracked.current());
 }
 
-TEST_F(Phases, AreDoneByAMovedNeedleNotByWhereItBegins) {
+TEST_F(Phases, RequireMotionFromTheStart) {
   add("move", {{ConditionKind::kMoved, 5.0, {}}});
   PhaseTracker tracked = tracker();
   tracked.step(at(0.0, {50.0, -40.0, 50.0}));
@@ -289,7 +289,7 @@ TEST_F(Phases, LookAheadAlongTheThrow) {
   EXPECT_FALSE(is_done_by(clear, at(0.0, {45.0, 60.0, 50.0}, -Vec3::UnitX()))) << "the vessel is 20 mm ahead";
 }
 
-TEST_F(Phases, SkipWhatIsNotFinite) {
+TEST_F(Phases, SkipNonFiniteMoments) {
   add("touch", {{ConditionKind::kTipOnSkin, 0.0, {}}});
   PhaseTracker tracked = tracker();
   PhaseMoment broken = at(0.0, {50.0, 0.5, 50.0});

@@ -11,7 +11,7 @@ namespace {
 
 using namespace testing;
 
-TEST(Puncture, TheRightSubstanceProvesTheTarget) {
+TEST(Puncture, CorrectSubstanceConfirmsTheTarget) {
   BoxCase puncture = make_puncture();
   puncture.task.confirmed_by = tasks::Substance::kBile;
   puncture.task.weights = {{"target", 60.0}, {"confirmation", 40.0}};
@@ -34,7 +34,7 @@ TEST(Puncture, TheRightSubstanceProvesTheTarget) {
   EXPECT_NEAR(puncture.score(attempt).score, 100.0, 1e-6);
 }
 
-TEST(Puncture, AConfirmedPlaceIsTheEndEvenIfTheNeedleWentDeeperBefore) {
+TEST(Puncture, EndsAtTheConfirmedPositionDespiteEarlierDepth) {
   BoxCase puncture = make_puncture();
   puncture.task.confirmed_by = tasks::Substance::kBile;
   puncture.task.weights = {{"target", 60.0}, {"confirmation", 40.0}};
@@ -47,7 +47,7 @@ TEST(Puncture, AConfirmedPlaceIsTheEndEvenIfTheNeedleWentDeeperBefore) {
   EXPECT_NEAR(part(puncture.score(attempt), "target").value, 0.0, 0.1);
 }
 
-TEST(Puncture, WithoutProofTheLastLookIsTheEnd) {
+TEST(Puncture, EndsAtTheLastCheckWithoutConfirmation) {
   BoxCase puncture = make_puncture();
   puncture.task.confirmed_by = tasks::Substance::kBile;
   puncture.task.weights = {{"target", 50.0}, {"confirmation", 20.0}, {"length", 10.0}, {"time", 20.0}};
@@ -73,7 +73,7 @@ TEST(Puncture, WithoutProofTheLastLookIsTheEnd) {
   EXPECT_NEAR(part(puncture.score(samples, {}), "target").value, 5.0, 0.6) << "the needle went on after it";
 }
 
-TEST(Puncture, ATargetThatWasNotProvenIsNotCalledMissed) {
+TEST(Puncture, ReportsAnUnconfirmedTargetAsNotConfirmed) {
   BoxCase puncture = make_puncture();
   puncture.task.confirmed_by = tasks::Substance::kBile;
   puncture.task.weights = {{"target", 60.0}, {"confirmation", 40.0}};
@@ -84,7 +84,7 @@ TEST(Puncture, ATargetThatWasNotProvenIsNotCalledMissed) {
   EXPECT_STREQ(target_words(puncture.score(attempt)), "reached");
 }
 
-TEST(Puncture, TheNearestExpertPathCounts) {
+TEST(Puncture, UsesTheNearestExpertPath) {
   BoxCase puncture = make_puncture();
   const Vec3 beside_P(14.0, 0.0, 0.0);
   tasks::PlannedPath other = make_box_plan();
@@ -97,7 +97,7 @@ TEST(Puncture, TheNearestExpertPathCounts) {
   EXPECT_EQ(puncture.score(make_attempt(make_box_plan().line_P)).expert, 0U);
 }
 
-TEST(Puncture, PainIsCountedOnceAContact) {
+TEST(Puncture, CountsPainOncePerContact) {
   BoxCase puncture = make_puncture();
   puncture.task.pain = {{"bone"}, true};
   puncture.task.weights = {{"target", 50.0}, {"comfort", 50.0}};
@@ -112,7 +112,7 @@ TEST(Puncture, PainIsCountedOnceAContact) {
   EXPECT_EQ(puncture.score(attempt).pain_events, 2U);
 }
 
-TEST(Puncture, AnaestheticHelpsOnlyWhereItWasInjected) {
+TEST(Puncture, AnaestheticActsOnlyAtItsInjectionSite) {
   BoxCase puncture = make_puncture();
   puncture.task.pain = {{}, true};
   puncture.task.weights = {{"target", 50.0}, {"comfort", 50.0}};
@@ -141,7 +141,7 @@ TEST(Puncture, TouchingTheSkinDoesNotHurt) {
   for (const telemetry::TickSample& sample : attempt.samples) EXPECT_FALSE(watch.step(sample));
 }
 
-TEST(Puncture, AShotBeforeTheSkinGaveWayIsNoEnd) {
+TEST(Puncture, ShotBeforeSkinPunctureDoesNotEnd) {
   BoxCase made;
   const Attempt attempt = make_attempt(make_box_plan().line_P);
   const Outcome once = made.score(attempt.samples, {attempt.fired});
@@ -154,7 +154,7 @@ TEST(Puncture, AShotBeforeTheSkinGaveWayIsNoEnd) {
   }
 }
 
-TEST(Puncture, NeedlessShotsCost) {
+TEST(Puncture, UnnecessaryShotsCostPoints) {
   BoxCase made;
   made.task.weights = {{"core", 50.0}, {"passes", 50.0}};
   const Attempt attempt = make_attempt(make_box_plan().line_P);
@@ -171,7 +171,7 @@ TEST(Puncture, NeedlessShotsCost) {
   EXPECT_TRUE(has_hint(made.score(attempt.samples, shots), "The gun was fired 12 times for 1 core"));
 }
 
-TEST(Puncture, WhatComesWithoutAPiercedWallIsNotTheTarget) {
+TEST(Puncture, TargetNeedsAPiercedWall) {
   // The tip presses 4 mm into the wall of the lesion: it is at the planned place, and in front of the lesion.
   BoxCase puncture = make_puncture();
   puncture.task.weights = {{"target", 100.0}};
@@ -191,7 +191,7 @@ TEST(Puncture, WhatComesWithoutAPiercedWallIsNotTheTarget) {
   EXPECT_STREQ(target_words(unproven), "not reached");
 }
 
-TEST(Puncture, BileThatComesFromBehindTheTipDoesNotMoveIt) {
+TEST(Puncture, BileFromBehindTheTipDoesNotMoveTheTarget) {
   BoxCase puncture = make_puncture();
   puncture.task.confirmed_by = tasks::Substance::kBile;
   puncture.task.weights = {{"target", 60.0}, {"confirmation", 40.0}};
@@ -204,7 +204,7 @@ TEST(Puncture, BileThatComesFromBehindTheTipDoesNotMoveIt) {
   EXPECT_NEAR(part(outcome, "target").value, 3.0, 0.6);
 }
 
-TEST(Puncture, AnySafeWayIsWorthTheWholeAccess) {
+TEST(Puncture, AnySafePathScoresFullAccess) {
   BoxCase puncture = make_puncture();
   puncture.task.weights = {{"target", 20.0}, {"access", 80.0}};
   puncture.task.min_organ_path_mm = 0.0;
@@ -225,7 +225,7 @@ TEST(Puncture, AnySafeWayIsWorthTheWholeAccess) {
   }
 }
 
-TEST(Puncture, PartsThatCannotBeJudgedLeaveTheirPointsToTheOthers) {
+TEST(Puncture, RedistributesPointsOfUnscoredParts) {
   BoxCase puncture = make_puncture();
   puncture.task.weights = {{"target", 60.0}, {"visibility", 40.0}};
   const Attempt attempt = make_attempt(make_box_plan().line_P);

@@ -21,7 +21,7 @@ Outcome score(const Segment& line_P) {
   return BoxCase().score(make_attempt(line_P));
 }
 
-TEST(Score, ThePlannedAttemptIsWorthAll) {
+TEST(Score, PlannedAttemptScoresFully) {
   const Outcome outcome = score(make_box_plan().line_P);
   EXPECT_GT(outcome.score, 99.5);  // 2.5 s of 120 s
   EXPECT_TRUE(outcome.target_reached);
@@ -31,7 +31,7 @@ TEST(Score, ThePlannedAttemptIsWorthAll) {
   EXPECT_EQ(outcome.hints[0].text.rfind("Well done", 0), 0u) << outcome.hints[0].text;
 }
 
-TEST(Score, PartsAddUpToAHundredAndToTheScore) {
+TEST(Score, PartsSumTo100AndToTheScore) {
   for (const bool is_biopsy : {true, false}) {
     const BoxCase made = is_biopsy ? BoxCase() : make_puncture();
     const Outcome outcome = made.score(make_attempt(shifted({2.0, 0.0, 1.0})));
@@ -47,7 +47,7 @@ TEST(Score, PartsAddUpToAHundredAndToTheScore) {
   }
 }
 
-TEST(Score, DoseCostsPointsOnlyWhereTheTaskLimitsIt) {
+TEST(Score, DoseCostsPointsOnlyIfTheTaskLimitsIt) {
   BoxCase made = make_puncture();
   made.xray.beam_s = 1.0;
   const Attempt attempt = make_attempt(make_box_plan().line_P);
@@ -87,7 +87,7 @@ TEST(Score, CloserIsNeverWorse) {
   }
 }
 
-TEST(Score, EachPartFallsWithItsOwnDeviationOnly) {
+TEST(Score, EachPartDependsOnItsOwnDeviationOnly) {
   const Outcome off_entry = score({{54.0, 0.0, 50.0}, {50.0, 51.0, 50.0}});
   EXPECT_NEAR(part(off_entry, "entry").points, 10.0 / (1.0 + 0.16), 0.01);
   EXPECT_EQ(part(off_entry, "target").value, 0.0) << "the notch is in the lesion";
@@ -95,7 +95,7 @@ TEST(Score, EachPartFallsWithItsOwnDeviationOnly) {
   EXPECT_NEAR(part(shallow, "entry").points, 10.0, 0.01);
 }
 
-TEST(Score, HarmCostsByItsGrade) {
+TEST(Score, HarmCostsPointsByGrade) {
   const Outcome rib = score({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
   EXPECT_EQ(rib.risks_touched, std::vector<std::string>{"rib_right_9"});
   EXPECT_NEAR(part(rib, "risk").points, 12.0, 1e-9);
@@ -110,7 +110,7 @@ TEST(Score, HarmCostsByItsGrade) {
   EXPECT_TRUE(has_hint(vessel, "mm into the portal vein"));
 }
 
-TEST(Score, TargetPointsFallWithEveryMillimetreOutsideTheLesion) {
+TEST(Score, TargetPointsFallWithDistanceOutsideTheLesion) {
   // Short of the target along the path: the notch's middle leaves the lesion (10 mm in radius) after 10.5 mm.
   const auto points_at = [](double short_mm) {
     return part(score({{50.0, 0.0, 50.0}, {50.0, 51.0 - short_mm, 50.0}}), "target").points;
@@ -125,7 +125,7 @@ TEST(Score, TargetPointsFallWithEveryMillimetreOutsideTheLesion) {
   }
 }
 
-TEST(Score, NoPartIsNegativeAndACriticalTouchIsNotPassed) {
+TEST(Score, CriticalTouchFailsAndNoPartIsNegative) {
   BoxCase made;
   const Attempt attempt = make_attempt({{50.0, 0.0, 75.0}, {50.0, 15.0, 75.0}});
   for (const bool is_critical : {false, true}) {
@@ -152,7 +152,7 @@ TEST(Score, APassedAttemptHasNoFails) {
   EXPECT_EQ(far.fails.front(), "the target was not reached: the cores hold 0 mm of it, one can hold 17 mm");
 }
 
-TEST(Score, ALesionIsReachedAnywhereInItAHealthyOrganOnlyAtThePlannedPlace) {
+TEST(Score, ReachesALesionAnywhereButAnOrganOnlyAsPlanned) {
   // A long lesion is reached anywhere in it; healthy organ is everywhere, and only the planned place counts.
   anatomy::VirtualPatient long_lesion = make_box_patient();
   for (std::size_t i = 0; i < long_lesion.labels.voxels.size(); ++i)
@@ -172,7 +172,7 @@ TEST(Score, ALesionIsReachedAnywhereInItAHealthyOrganOnlyAtThePlannedPlace) {
   EXPECT_FALSE(is_reached(healthy, 9.0));  // liver is all around: a core of it does not tell the place
 }
 
-TEST(Score, NoviceIsWorseThanTheExpertAndMostAreClearly) {
+TEST(Score, NoviceScoresLowerThanTheExpert) {
   const auto score_of = [](auto make_operator, std::uint64_t seed) {
     const tasks::OperatorCase the_case{make_box_plan().line_P, true, seed};
     LayeredBody body(the_case.path_P, {{0.0, 4.5, 2.8}, {10.0, 2.8, 2.5}, {20.0, 2.7, 1.5}}, 0.001);
@@ -193,7 +193,7 @@ TEST(Score, NoviceIsWorseThanTheExpertAndMostAreClearly) {
   EXPECT_LT(novices, 95.0);
 }
 
-TEST(Score, ScoresWhatThereIsOfAnUnfinishedAttempt) {
+TEST(Score, HandlesUnfinishedAttempts) {
   EXPECT_EQ(score(std::vector<telemetry::TickSample>{}, {}).score, 0.0);
   EXPECT_EQ(score(std::vector<telemetry::TickSample>{}, {}).not_scored, "the needle never touched the skin");
   EXPECT_TRUE(has_hint(score(std::vector<telemetry::TickSample>{}, {}), "never reached the skin"));
@@ -217,7 +217,7 @@ TEST(Score, ScoresWhatThereIsOfAnUnfinishedAttempt) {
   EXPECT_FALSE(score(whole, whole.size() + 5).best_core() != nullptr);
 }
 
-TEST(Score, ADeepAttemptWithoutAShotIsNotScoredButAPunctureWithoutAGunIs) {
+TEST(Score, RequiresAShotOnlyWithAGun) {
   const Attempt attempt = make_attempt({{50.0, 0.0, 50.0}, {50.0, 25.0, 50.0}});
   const Outcome unfired = score(attempt.samples, {});
   EXPECT_EQ(unfired.not_scored, "the gun was not fired");
@@ -228,7 +228,7 @@ TEST(Score, ADeepAttemptWithoutAShotIsNotScoredButAPunctureWithoutAGunIs) {
   EXPECT_GT(puncture.score, 0.0);
 }
 
-TEST(Hints, TellWhereTheInsertionPointWasOff) {
+TEST(Hints, StateTheOffsetOfTheInsertionPoint) {
   const Outcome outcome = score({{56.0, 0.0, 50.0}, {50.0, 51.0, 50.0}});
   EXPECT_TRUE(has_hint(outcome,
                        "The insertion point was 6 mm too far to the patient's left: move the needle 6 mm to the "
@@ -238,7 +238,7 @@ TEST(Hints, TellWhereTheInsertionPointWasOff) {
                        "further to the patient's left."));
 }
 
-TEST(Hints, TellTheCostliestErrorFirst) {
+TEST(Hints, StateTheCostliestErrorFirst) {
   // 5 mm beside the path and 25 mm short: the core is lost, worth far more than the entry.
   const Outcome outcome = score({{55.0, 0.0, 50.0}, {55.0, 26.0, 50.0}});
   ASSERT_GE(outcome.hints.size(), 2u);
@@ -253,7 +253,7 @@ TEST(Hints, DoNotSendTheNeedleThroughBone) {
   EXPECT_FALSE(has_hint(outcome, "advance"));
 }
 
-TEST(Hints, AnOvershootIsNoRetraction) {
+TEST(Hints, DistinguishOvershootFromRetraction) {
   const Outcome deep = score({{50.0, 0.0, 50.0}, {50.0, 73.0, 50.0}});
   EXPECT_TRUE(has_hint(deep, "stop 22 mm earlier")) << deep.hints.front().text;
   EXPECT_FALSE(has_hint(deep, "mm deep for a path of")) << "the same advice twice";
@@ -277,18 +277,18 @@ TEST(Hints, AnOvershootIsNoRetraction) {
   EXPECT_TRUE(has_hint(repeated, "need not be corrected inside"));
 }
 
-TEST(Hints, SayHowFarShortTheTipStopped) {
+TEST(Hints, StateHowFarShortTheTipStopped) {
   Attempt attempt = make_attempt({{50.0, 0.0, 50.0}, {50.0, 30.0, 50.0}});
   EXPECT_TRUE(has_hint(score(attempt.samples, {}), "The tip stopped 21 mm short of the target."));
 }
 
-TEST(Hints, SpeakOfWhatMattersOnly) {
+TEST(Hints, OmitSmallErrors) {
   const Outcome outcome = score(shifted({1.0, 0.0, 0.5}));
   EXPECT_FALSE(has_hint(outcome, "insertion point"));
   EXPECT_FALSE(has_hint(outcome, "pointed"));
 }
 
-TEST(Score, ValuesReadAsWhatTheyAre) {
+TEST(Score, FormatsValuesWithTheirUnits) {
   EXPECT_EQ(part_value_text({"target", "", 3.14, "mm", 0.0, 0.0}), "3.1 mm");
   EXPECT_EQ(part_value_text({"time", "", 123.4, "s", 0.0, 0.0}), "123 s");
   EXPECT_EQ(part_value_text({"risk", "", 2.0, "", 0.0, 0.0}), "2");
@@ -296,7 +296,7 @@ TEST(Score, ValuesReadAsWhatTheyAre) {
   EXPECT_EQ(part_value_text({"confirmation", "", 0.0, "", 0.0, 0.0}), "no");
 }
 
-TEST(Score, EntryInsideTheZoneIsWhole) {
+TEST(Score, EntryInsideTheZoneScoresFully) {
   const Segment plan_P = make_box_plan().line_P;
   const Segment beside_P{plan_P.a + Vec3(4.0, 0.0, 0.0), plan_P.b + Vec3(4.0, 0.0, 0.0)};
   const Attempt attempt = make_attempt(beside_P);

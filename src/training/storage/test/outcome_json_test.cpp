@@ -15,7 +15,7 @@ scoring::Outcome example() {
   return outcome;
 }
 
-TEST(OutcomeJson, GivesCountsBack) {
+TEST(OutcomeJson, RoundTripsCounts) {
   const auto read = outcome_from_json(outcome_to_json(example()), "test");
   ASSERT_TRUE(read) << read.error().text();
   EXPECT_EQ(read->expert, 2u);
@@ -25,7 +25,7 @@ TEST(OutcomeJson, GivesCountsBack) {
 }
 
 /// Null is not a number: it cannot become a count.
-TEST(OutcomeJson, RefusesCountsThatAreNone) {
+TEST(OutcomeJson, RefusesInvalidCounts) {
   const std::string whole = outcome_to_json(example());
   for (const std::string count : {R"("expert":2)", R"("pain_events":3)", R"("passes":4)"}) {
     const std::size_t at = whole.find(count);

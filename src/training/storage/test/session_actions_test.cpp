@@ -21,7 +21,7 @@ void write_with_actions(const fs::path& path) {
   ASSERT_TRUE(writer->finish(testing::example_outcome(), {}));
 }
 
-TEST(SessionActions, ComeBackAsTheyWere) {
+TEST(SessionActions, RoundTrip) {
   const TemporaryFolder folder;
   write_with_actions(folder / "s.trocar");
   const auto session = load_session(folder / "s.trocar");
@@ -29,7 +29,7 @@ TEST(SessionActions, ComeBackAsTheyWere) {
   EXPECT_EQ(session->actions, kActions);
 }
 
-TEST(SessionActions, AreMissingInSessionsOfOlderProgramsAndReportedWhenChanged) {
+TEST(SessionActions, AreOptionalInOldSessionsAndCheckedForChanges) {
   const TemporaryFolder folder;
   for (const char* statement :
        {"DROP TABLE actions", "UPDATE actions SET kind = 99", "UPDATE actions SET share = 0.5"}) {
@@ -53,7 +53,7 @@ TEST(SessionActions, AreMissingInSessionsOfOlderProgramsAndReportedWhenChanged) 
   }
 }
 
-TEST(SessionActions, ShotsOfAKilledSessionAreKnown) {
+TEST(SessionActions, RestoreShotsOfAKilledSession) {
   const TemporaryFolder folder;
   const fs::path path = folder / "killed.trocar";
   std::vector<double> times_s;

@@ -60,7 +60,7 @@ TEST(SessionCrash, LosesLessThanASecondWhenKilled) {
   }
 }
 
-TEST(SessionCrash, LosesNoMoreWhenTheClockStands) {
+TEST(SessionCrash, LosesNoMoreWhenTheClockStops) {
   const TemporaryFolder folder;
   in_child([&] { write_and_die(folder / "s.trocar", 1700, 0.0, 1000.0); });
   const auto session = load_session(folder / "s.trocar");
@@ -68,7 +68,7 @@ TEST(SessionCrash, LosesNoMoreWhenTheClockStands) {
   EXPECT_GE(session->samples.size(), 1200u);
 }
 
-TEST(SessionCrash, LosesNoMoreAtASlowRateThanItSays) {
+TEST(SessionCrash, LosesNoMoreAtASlowRate) {
   const TemporaryFolder folder;
   in_child([&] { write_and_die(folder / "s.trocar", 170, 0.01, 1e9); });  // The rate lies: time decides.
   const auto session = load_session(folder / "s.trocar");
@@ -111,7 +111,7 @@ TEST(SessionCrash, KeepsTheBufferWhenLeftUnfinished) {
   EXPECT_FALSE(session->outcome);
 }
 
-TEST(SessionCrash, SaysThatTheDiskIsFullAndKeepsWhatItHas) {
+TEST(SessionCrash, ReportsAFullDiskAndKeepsRecordedTicks) {
   const TemporaryFolder folder;
   const fs::path path = folder / "s.trocar";
   // The child ends with 10 + what it saw: an error of append (1) that stays (2), and is no usage error (4).
@@ -138,7 +138,7 @@ TEST(SessionCrash, SaysThatTheDiskIsFullAndKeepsWhatItHas) {
   EXPECT_GE(session->samples.size(), 500u);
 }
 
-TEST(SessionCrash, LeavesNothingWhereTheFirstPageFindsNoRoom) {
+TEST(SessionCrash, LeavesNothingWithoutRoomForTheFirstPage) {
   const TemporaryFolder folder;
   const int status = in_child([&] {
     std::signal(SIGXFSZ, SIG_IGN);
@@ -151,7 +151,7 @@ TEST(SessionCrash, LeavesNothingWhereTheFirstPageFindsNoRoom) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(SessionCrash, SaysWhatToDoWhereAKilledSessionCannotBeRecovered) {
+TEST(SessionCrash, AdvisesWhenAKilledSessionCannotBeRecovered) {
   const TemporaryFolder folder;
   const fs::path path = folder / "s.trocar";
   in_child([&] {
@@ -174,7 +174,7 @@ TEST(SessionCrash, SaysWhatToDoWhereAKilledSessionCannotBeRecovered) {
   EXPECT_TRUE(load_session(path));
 }
 
-TEST(IncompleteSession, IsSetAsideForANewOne) {
+TEST(IncompleteSession, IsRenamedForANewOne) {
   const TemporaryFolder folder;
   const fs::path path = folder / "s.session";
   for (const char* kept : {"s.incomplete.session", "s.incomplete-2.session"}) {
@@ -193,7 +193,7 @@ TEST(IncompleteSession, IsSetAsideForANewOne) {
   EXPECT_TRUE(SessionWriter::create(path, example_info()));
 }
 
-TEST(IncompleteSession, NothingElseIsSetAside) {
+TEST(IncompleteSession, NothingElseIsRenamed) {
   const TemporaryFolder folder;
   const fs::path path = folder / "s.session";
   EXPECT_FALSE(set_aside_incomplete_session(path).value());  // nothing there
@@ -213,7 +213,7 @@ TEST(IncompleteSession, NothingElseIsSetAside) {
   EXPECT_TRUE(writer->finish(example_outcome(), {}));
 }
 
-TEST(SessionCrash, ADiskThatIsFullAtTheEndIsAnError) {
+TEST(SessionCrash, FailsOnADiskThatIsFullAtTheEnd) {
   // The limit lies between what the -wal file takes and what the finished file takes: all is written but the end.
   const TemporaryFolder folder;
   const fs::path path = folder / "s.trocar";

@@ -46,7 +46,7 @@ std::vector<std::vector<std::string>> exported_rows(const Session& session) {
   return rows;
 }
 
-TEST(SessionCsv, HasThePromisedHeaderAndOneRowATick) {
+TEST(SessionCsv, HasTheDocumentedHeaderAndOneRowPerTick) {
   const TemporaryFolder folder;
   ASSERT_TRUE(export_csv(example_session(321), folder / "s.csv"));
   const std::string text = *read_file(folder / "s.csv");
@@ -107,7 +107,7 @@ TEST(SessionCsv, PutsEachFieldUnderItsName) {
   EXPECT_EQ(number("coupling_share"), s.coupling_share);
 }
 
-TEST(SessionCsv, WritesNumbersThatReadBackToTheSameValue) {
+TEST(SessionCsv, RoundTripsNumbers) {
   Session session = example_session(1);
   session.samples[0].tip_mm = {0.1, 1e-310, 123456789.123456789};
   session.samples[0].depth_mm = std::numeric_limits<double>::quiet_NaN();
@@ -120,7 +120,7 @@ TEST(SessionCsv, WritesNumbersThatReadBackToTheSameValue) {
   EXPECT_EQ(rows[1][34], "-inf");
 }
 
-TEST(SessionCsv, QuotesNamesThatHoldCommas) {
+TEST(SessionCsv, QuotesNamesWithCommas) {
   Session session = example_session(1);
   session.info.tissue_names[0] = "air, \"dry\"";
   const TemporaryFolder folder;
@@ -128,14 +128,14 @@ TEST(SessionCsv, QuotesNamesThatHoldCommas) {
   EXPECT_NE(read_file(folder / "s.csv")->find(",\"air, \"\"dry\"\"\","), std::string::npos);
 }
 
-TEST(SessionCsv, NamesAnIdThatTheTableLacks) {
+TEST(SessionCsv, WritesTheNumberOfAnUnknownId) {
   SessionInfo info = example_info();
   telemetry::TickSample sample;
   sample.events[0] = {telemetry::EventKind::kPuncture, 200};
   EXPECT_EQ(event_text(info, sample), "puncture:#200");
 }
 
-TEST(SessionCsv, LeavesNothingHalfWritten) {
+TEST(SessionCsv, LeavesNoPartialFile) {
   const TemporaryFolder folder;
   EXPECT_FALSE(export_csv(example_session(3), folder.path()));  // A folder stands in the way.
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));

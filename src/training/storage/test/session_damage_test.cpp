@@ -102,7 +102,7 @@ FlipCounts flip_bits(std::size_t files, std::size_t flips, std::uint64_t seed) {
   return counts;
 }
 
-TEST(SessionDamage, FlippedBitsAreFoundOrDoNoHarm) {
+TEST(SessionDamage, DetectsFlippedBitsUnlessHarmless) {
   const FlipCounts one = flip_bits(24, 1, 1);
   EXPECT_GT(one.partly, 10u);
   const FlipCounts many = flip_bits(12, 40, 2);
@@ -118,7 +118,7 @@ TEST(SessionDamage, DISABLED_FlippedBitsAtLength) {
   }
 }
 
-TEST(SessionDamage, NamesTheBlockAndGivesTheRest) {
+TEST(SessionDamage, NamesTheDamagedBlockAndReturnsTheRest) {
   const TemporaryFolder folder;
   const fs::path path = folder / "s.trocar";
   write_example(path, 2600);
@@ -182,7 +182,7 @@ TEST(SessionDamage, NamesOtherParts) {
   }
 }
 
-TEST(SessionDamage, OlderSessionsOpenAndAreKnownByTheirLackOfChecksums) {
+TEST(SessionDamage, OpensOlderSessionsWithoutChecksums) {
   const TemporaryFolder folder;
   const fs::path path = folder / "s.trocar";
   write_example(path, 1200);
@@ -195,7 +195,7 @@ TEST(SessionDamage, OlderSessionsOpenAndAreKnownByTheirLackOfChecksums) {
   expect_same_case(*session);
 }
 
-TEST(SessionDamage, SessionsWithoutTheVersionOfTheForcesHaveTheFirst) {
+TEST(SessionDamage, DefaultsToTheFirstForceVersion) {
   const TemporaryFolder folder;
   const fs::path path = folder / "s.trocar";
   write_example(path, 3);
@@ -210,7 +210,7 @@ TEST(SessionDamage, SessionsWithoutTheVersionOfTheForcesHaveTheFirst) {
   }
 }
 
-TEST(SessionDamage, RefusesTablesThatCompute) {
+TEST(SessionDamage, RefusesTablesWithGeneratedColumns) {
   const std::string endless = "WITH RECURSIVE c(x) AS (SELECT 0 UNION ALL SELECT x + 1 FROM c) ";
   const std::vector<std::vector<std::string>> hostile{
       {"DROP TABLE ticks", "CREATE VIEW ticks AS " + endless + "SELECT x AS tick FROM c"},
@@ -234,7 +234,7 @@ TEST(SessionDamage, RefusesTablesThatCompute) {
   }
 }
 
-TEST(SessionDamage, RefusesLongTextsUnread) {
+TEST(SessionDamage, RefusesLongTextsWithoutReading) {
   for (const char* statement : {"UPDATE info SET value = printf('%.*c', 30000000, 'x') WHERE key = 'tissue_table_toml'",
                                 "INSERT INTO info SELECT 'k' || value, printf('%.*c', 3000000, 'x') FROM (SELECT tick "
                                 "AS value FROM ticks LIMIT 9)",
@@ -265,7 +265,7 @@ TEST(SessionDamage, BoundsTheWorkOfAQuery) {
   EXPECT_TRUE(database.is_exhausted());
 }
 
-TEST(SessionDamage, ChangesNothing) {
+TEST(SessionDamage, NeverModifiesTheFile) {
   const TemporaryFolder folder;
   write_example(folder / "s.trocar", 600);
   detail::GuardedDatabase database(folder / "s.trocar");

@@ -42,7 +42,7 @@ std::string refusal(const fs::path& path) {
   return session ? std::string("opened") : session.error().text();
 }
 
-TEST(SessionFile, GivesEveryTickBackBitByBit) {
+TEST(SessionFile, RoundTripsEveryTickBitwise) {
   const TemporaryFolder folder;
   write_session(folder / "s.trocar", 1234);
   const auto session = load_session(folder / "s.trocar");
@@ -51,7 +51,7 @@ TEST(SessionFile, GivesEveryTickBackBitByBit) {
   for (std::size_t n = 0; n < 1234; ++n) EXPECT_EQ(bits_of(session->samples[n]), bits_of(example_sample(n))) << n;
 }
 
-TEST(SessionFile, HashIsThatOfEveryBitOfEveryTick) {
+TEST(SessionFile, HashCoversEveryBitOfEveryTick) {
   const TemporaryFolder folder;
   const auto hash_of = [&](const char* name, std::size_t ticks, std::size_t changed, double value) {
     auto writer = SessionWriter::create(folder / name, example_info());
@@ -74,7 +74,7 @@ TEST(SessionFile, HashIsThatOfEveryBitOfEveryTick) {
   EXPECT_NE(hash_of("d.trocar", 1233, 700, value), hash) << "one tick less";
 }
 
-TEST(SessionFile, GivesTheCaseBack) {
+TEST(SessionFile, RoundTripsTheCase) {
   const TemporaryFolder folder;
   write_session(folder / "s.trocar", 1);
   const auto session = load_session(folder / "s.trocar");
@@ -109,7 +109,7 @@ TEST(SessionFile, GivesTheCaseBack) {
   EXPECT_EQ(info.label_names, expected.label_names);
 }
 
-TEST(SessionFile, GivesTheOutcomeBack) {
+TEST(SessionFile, RoundTripsTheOutcome) {
   const TemporaryFolder folder;
   write_session(folder / "s.trocar", 10);
   const auto session = load_session(folder / "s.trocar");
@@ -147,7 +147,7 @@ TEST(SessionFile, GivesTheOutcomeBack) {
   EXPECT_EQ(session->outcome->cores[0].risks_in_throw, expected.cores[0].risks_in_throw);
 }
 
-TEST(SessionFile, KeepsNumbersThatAreNone) {
+TEST(SessionFile, KeepsNonFiniteNumbers) {
   const TemporaryFolder folder;
   telemetry::TickSample sample = example_sample(0);
   sample.f_prepuncture_n = std::numeric_limits<double>::quiet_NaN();
@@ -175,7 +175,7 @@ TEST(SessionFile, KeepsNumbersThatAreNone) {
   EXPECT_TRUE(session->shots.empty());
 }
 
-TEST(SessionFile, IsOnePlainFileWhenFinished) {
+TEST(SessionFile, IsASingleFileWhenFinished) {
   const TemporaryFolder folder;
   write_session(folder / "s.trocar", 700);
   std::size_t files = 0;
@@ -192,7 +192,7 @@ TEST(SessionFile, HoldsNoTickWhenNoneWasAppended) {
   EXPECT_TRUE(session->outcome);
 }
 
-TEST(SessionFile, TakesPathsWithSpacesEqualSignsAndUmlauts) {
+TEST(SessionFile, AcceptsPathsWithSpacesEqualSignsAndUmlauts) {
   const TemporaryFolder folder;
   for (const char* name : {"two words and more.trocar", "a=b c.trocar", "Übung 'x';.trocar", ":memory:"}) {
     write_session(folder / name, 3);
@@ -201,7 +201,7 @@ TEST(SessionFile, TakesPathsWithSpacesEqualSignsAndUmlauts) {
   }
 }
 
-TEST(SessionFile, NeverTouchesAnExistingFile) {
+TEST(SessionFile, NeverOverwritesAnExistingFile) {
   const TemporaryFolder folder;
   write_bytes(folder / "mine.txt", "my text");
   const auto writer = SessionWriter::create(folder / "mine.txt", example_info());
@@ -210,7 +210,7 @@ TEST(SessionFile, NeverTouchesAnExistingFile) {
   EXPECT_EQ(*read_file(folder / "mine.txt"), "my text");
 }
 
-TEST(SessionFile, MakesAFolderThatIsNotThere) {
+TEST(SessionFile, CreatesAMissingFolder) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "new" / "place" / "s.trocar";
   ASSERT_TRUE(SessionWriter::create(path, example_info()));
@@ -232,7 +232,7 @@ TEST(SessionFile, RefusesANewerFormat) {
   EXPECT_NE(refusal(folder / "s.trocar").find("has format 2, this program reads up to 1"), std::string::npos);
 }
 
-TEST(SessionFile, RefusesADatabaseThatIsNoSession) {
+TEST(SessionFile, RefusesAnotherDatabase) {
   const TemporaryFolder folder;
   {
     soci::session database;
@@ -242,7 +242,7 @@ TEST(SessionFile, RefusesADatabaseThatIsNoSession) {
   EXPECT_NE(refusal(folder / "other.db").find("is a database, but not a session"), std::string::npos);
 }
 
-TEST(SessionFile, RefusesWhatIsNoSession) {
+TEST(SessionFile, RefusesNonSessionFiles) {
   const TemporaryFolder folder;
   write_bytes(folder / "empty", "");
   write_bytes(folder / "short", "SQLite");
@@ -306,7 +306,7 @@ TEST(SessionFile, RefusesIdsOutOfRange) {
   }
 }
 
-TEST(SessionFile, SessionsOfOlderProgramsLackTheGateAndOpen) {
+TEST(SessionFile, OpensOlderSessionsWithoutGateFields) {
   const TemporaryFolder folder;
   write_session(folder / "s.trocar", 10);
   {

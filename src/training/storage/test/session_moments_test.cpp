@@ -43,7 +43,7 @@ TEST(SessionMoments, HasNeedleForcesAndEventsOfEveryTick) {
   }
 }
 
-TEST(SessionMoments, TakesTheNewestTransducerAndXraySample) {
+TEST(SessionMoments, UseTheNewestTransducerAndXraySample) {
   Session session = session_of(100);
   session.transducer = {{0.0105, Pose::translation({1, 0, 0}), 0.5}, {0.0500, Pose::translation({2, 0, 0}), 0.7}};
   tasks::XrayUse use;
@@ -60,7 +60,7 @@ TEST(SessionMoments, TakesTheNewestTransducerAndXraySample) {
   EXPECT_EQ(all[20].xray->beam_s, 3.0);
 }
 
-TEST(SessionMoments, MarksTheTickAfterAnInterruptionAndAfterDamage) {
+TEST(SessionMoments, MarkTheTickAfterAnInterruptionOrDamage) {
   Session session = session_of(60);
   for (std::size_t n = 30; n < 60; ++n) session.samples[n].time_s += 5.0;
   session.interruptions = {{0.0295, session.samples[30].time_s, "test"}};
@@ -84,7 +84,7 @@ TEST(SessionMoments, ContextHasPlanLayersAndShot) {
   EXPECT_TRUE(context_of(session).expert_paths.empty());
 }
 
-TEST(SessionMoments, TheEndIsThatOfTheScore) {
+TEST(SessionMoments, EndMatchesTheScore) {
   Session session = session_of(60);
   for (std::size_t n = 0; n < session.samples.size(); ++n) {
     session.samples[n].phase = telemetry::InsertionPhase::kInserted;
@@ -102,7 +102,7 @@ TEST(SessionMoments, TheEndIsThatOfTheScore) {
   EXPECT_EQ(end_s_of(session, &task, false), session.samples[45].time_s);
 }
 
-TEST(SessionMoments, AnExportedSessionHasTheSameMetrics) {
+TEST(SessionMoments, ExportKeepsTheMetrics) {
   Session session = session_of(400);
   for (std::size_t n = 0; n < session.samples.size(); ++n)
     session.samples[n].phase = telemetry::InsertionPhase::kInserted;

@@ -43,7 +43,7 @@ void write_with_changes(const std::filesystem::path& path) {
   ASSERT_TRUE(writer->finish(example_outcome(), {}));
 }
 
-TEST(SessionParametersFile, GivesChangesAndInterruptionsBack) {
+TEST(SessionParametersFile, RoundTripsChangesAndInterruptions) {
   const TemporaryFolder folder;
   write_with_changes(folder / "s.trocar");
   const auto session = load_session(folder / "s.trocar");
@@ -128,7 +128,7 @@ TEST(SessionParametersFile, RefusesAChangeBeyondTheTicks) {
   EXPECT_NE(session.error().what.find("changes of parameters"), std::string::npos) << session.error().text();
 }
 
-TEST(SessionParametersFile, MissesNoChangeUnnoticed) {
+TEST(SessionParametersFile, DetectsMissingChanges) {
   for (const char* statement : {"DROP TABLE parameters", "DELETE FROM parameters WHERE tick = 7",
                                 "UPDATE parameters SET settings = '' WHERE tick = 7", "DROP TABLE interruptions"}) {
     const TemporaryFolder folder;

@@ -31,7 +31,7 @@ void write_with_shapes(const fs::path& path, std::size_t shapes) {
   ASSERT_TRUE(writer->finish(testing::example_outcome(), {}));
 }
 
-TEST(SessionShape, ComesBackToTheMicrometre) {
+TEST(SessionShape, RoundTripsToTheMicrometre) {
   const TemporaryFolder folder;
   write_with_shapes(folder / "s.trocar", 2345);
   const auto session = load_session(folder / "s.trocar");
@@ -44,7 +44,7 @@ TEST(SessionShape, ComesBackToTheMicrometre) {
   }
 }
 
-TEST(SessionShape, LeavesOutWhatIsNoShapeOrNotLater) {
+TEST(SessionShape, SkipsInvalidOrOutOfOrderShapes) {
   const TemporaryFolder folder;
   {
     auto writer = SessionWriter::create(folder / "s.trocar", testing::example_info());
@@ -63,7 +63,7 @@ TEST(SessionShape, LeavesOutWhatIsNoShapeOrNotLater) {
   EXPECT_EQ(session->shapes[1].time_s, example_shape(4).time_s);
 }
 
-TEST(SessionShape, SessionsOfOlderProgramsHaveNoneAndOpen) {
+TEST(SessionShape, OpensOlderSessionsWithoutShapes) {
   const TemporaryFolder folder;
   write_with_shapes(folder / "s.trocar", 20);
   for (const char* statement : {"DROP TABLE needle_shape", "DELETE FROM checksums WHERE name = 'needle_shape'"})
@@ -74,7 +74,7 @@ TEST(SessionShape, SessionsOfOlderProgramsHaveNoneAndOpen) {
   EXPECT_TRUE(session->shapes.empty());
 }
 
-TEST(SessionShape, WhatIsNoShapeIsDamage) {
+TEST(SessionShape, ReportsInvalidShapesAsDamage) {
   for (const char* damage : {"UPDATE needle_shape SET beside_um = '1 2 3' WHERE time_s > 0.05",
                              "UPDATE needle_shape SET beside_um = '1 x' WHERE time_s > 0.05",
                              "UPDATE needle_shape SET beside_um = '1 99999999999' WHERE time_s > 0.05",

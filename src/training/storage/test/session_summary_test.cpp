@@ -12,7 +12,7 @@ using testing::example_info;
 using testing::example_outcome;
 using testing::write_example;
 
-TEST(SessionSummary, IsThatOfTheWholeSession) {
+TEST(SessionSummary, MatchesTheFullSession) {
   const TemporaryFolder folder;
   write_example(folder / "a.trocar", 700);
   const auto summary = load_summary(folder / "a.trocar");
@@ -56,7 +56,7 @@ TEST(SessionSummary, RefusesAChangedLevelAndAChangedScore) {
   }
 }
 
-TEST(SessionSummary, RefusesWhatIsNoSession) {
+TEST(SessionSummary, RefusesNonSessionFiles) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_file_atomically(folder / "text.trocar", "hello"));
   EXPECT_FALSE(load_summary(folder / "text.trocar"));

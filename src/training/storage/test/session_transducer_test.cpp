@@ -39,7 +39,7 @@ void write_with_transducer(const fs::path& path, std::size_t moments) {
 
 constexpr double kTolerance = 1e-12;  // a rotation becomes a quaternion and comes back
 
-TEST(SessionTransducer, ComesBackInOrder) {
+TEST(SessionTransducer, RoundTripsInOrder) {
   const TemporaryFolder folder;
   write_with_transducer(folder / "s.trocar", 2345);
   const auto session = load_session(folder / "s.trocar");
@@ -55,7 +55,7 @@ TEST(SessionTransducer, ComesBackInOrder) {
   EXPECT_EQ(session->samples.size(), 2345u);
 }
 
-TEST(SessionTransducer, MovesOnWithoutTheNeedle) {
+TEST(SessionTransducer, MovesIndependentlyOfTheNeedle) {
   const TemporaryFolder folder;
   SessionWriter writer = begin(folder / "s.trocar");
   for (std::size_t n = 0; n < 120; ++n) ASSERT_TRUE(writer.append(example_transducer(n)));
@@ -66,7 +66,7 @@ TEST(SessionTransducer, MovesOnWithoutTheNeedle) {
   EXPECT_TRUE(session->samples.empty());
 }
 
-TEST(SessionTransducer, LeavesOutWhatIsNoPoseOrNotLater) {
+TEST(SessionTransducer, SkipsInvalidOrOutOfOrderPoses) {
   const TemporaryFolder folder;
   {
     SessionWriter writer = begin(folder / "s.trocar");
@@ -83,7 +83,7 @@ TEST(SessionTransducer, LeavesOutWhatIsNoPoseOrNotLater) {
   EXPECT_EQ(session->transducer[1].time_s, example_transducer(4).time_s);
 }
 
-TEST(SessionTransducer, SessionsOfOlderProgramsHaveNoneAndOpen) {
+TEST(SessionTransducer, OpensOlderSessionsWithoutTransducer) {
   const TemporaryFolder folder;
   write_with_transducer(folder / "s.trocar", 20);
   // What a program of format 1 wrote before there was such a table, nor checksums.
@@ -96,7 +96,7 @@ TEST(SessionTransducer, SessionsOfOlderProgramsHaveNoneAndOpen) {
   EXPECT_TRUE(session->outcome);
 }
 
-TEST(SessionTransducer, DoesNotMakeTheFormatANewerOne) {
+TEST(SessionTransducer, KeepsTheFormatVersion) {
   const TemporaryFolder folder;
   write_with_transducer(folder / "s.trocar", 2);
   soci::session database;
@@ -104,7 +104,7 @@ TEST(SessionTransducer, DoesNotMakeTheFormatANewerOne) {
   EXPECT_EQ(detail::pragma_integer(database, "user_version"), 1);  // older programs still read its ticks
 }
 
-TEST(SessionTransducer, WhatIsNoPoseIsRefused) {
+TEST(SessionTransducer, RefusesInvalidPoses) {
   for (const char* damage : {"UPDATE transducer SET qw = 0, qx = 0, qy = 0, qz = 0 WHERE time_s > 0.05",
                              "UPDATE transducer SET x_mm = 9e999 WHERE time_s > 0.05",
                              "ALTER TABLE transducer RENAME COLUMN x_mm TO left_mm"}) {

@@ -48,7 +48,7 @@ class SessionWithoutLog : public ::testing::TestWithParam<SharedMemory> {
   fs::path journal_ = folder_ / "s.session-journal";
 };
 
-TEST_P(SessionWithoutLog, IsWrittenWholeAndToldOf) {
+TEST_P(SessionWithoutLog, IsCompleteWithANote) {
   const OtherFileSystem other(GetParam());
   auto writer = SessionWriter::create(path_, example_info());
   ASSERT_TRUE(writer) << writer.error().text();
@@ -77,7 +77,7 @@ TEST_P(SessionWithoutLog, LosesLessThanASecondWhenKilled) {
 }
 
 // Killed before any of its writes, the file is what the last commit left, or the last but one.
-TEST_P(SessionWithoutLog, IsWholeAfterAKillAtAnyWrite) {
+TEST_P(SessionWithoutLog, IsIntactAfterAKillAtAnyWrite) {
   int interrupted_commits = 0;
   std::size_t longest = 0;
   for (int writes = 0; writes < 320; writes += 7) {
@@ -100,7 +100,7 @@ TEST_P(SessionWithoutLog, IsWholeAfterAKillAtAnyWrite) {
   EXPECT_GT(interrupted_commits, 5);
 }
 
-TEST_P(SessionWithoutLog, IsCopiedWithWhatUndoesItsLastCommit) {
+TEST_P(SessionWithoutLog, IsCopiedWithItsRollbackJournal) {
   for (int writes = 150; !fs::exists(journal_) && writes < 200; ++writes) {
     for (const fs::path& file : session_files(path_)) fs::remove(file);
     write_and_be_killed(1600, writes);
@@ -115,7 +115,7 @@ TEST_P(SessionWithoutLog, IsCopiedWithWhatUndoesItsLastCommit) {
   EXPECT_EQ(session->samples.size(), load_session(path_)->samples.size());
 }
 
-TEST_P(SessionWithoutLog, IsReadAndNotSetAsideWhileItIsWritten) {
+TEST_P(SessionWithoutLog, IsReadableAndNotRenamedWhileBeingWritten) {
   const OtherFileSystem other(GetParam());
   auto writer = SessionWriter::create(path_, example_info());
   ASSERT_TRUE(writer);
@@ -131,7 +131,7 @@ TEST_P(SessionWithoutLog, IsReadAndNotSetAsideWhileItIsWritten) {
   EXPECT_EQ(load_session(path_)->samples.size(), 1002u);
 }
 
-TEST_P(SessionWithoutLog, IsSetAsideWhenItsProgramWasKilled) {
+TEST_P(SessionWithoutLog, IsRenamedWhenItsProgramWasKilled) {
   write_and_be_killed(1200);
   const OtherFileSystem other(GetParam());
   const auto name = set_aside_incomplete_session(path_);

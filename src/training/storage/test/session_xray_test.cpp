@@ -24,7 +24,7 @@ void write_with_xray(const fs::path& path, const std::vector<tasks::XrayUse>& us
   ASSERT_TRUE(writer->finish(testing::example_outcome(), {}));
 }
 
-TEST(SessionXray, ComesBackInOrder) {
+TEST(SessionXray, RoundTripsInOrder) {
   const TemporaryFolder folder;
   const std::vector<tasks::XrayUse> uses{example_use(0), example_use(1), example_use(2)};
   write_with_xray(folder / "s.trocar", uses);
@@ -33,7 +33,7 @@ TEST(SessionXray, ComesBackInOrder) {
   EXPECT_EQ(session->xray, uses);
 }
 
-TEST(SessionXray, LeavesOutWhatIsNotLaterOrNotFinite) {
+TEST(SessionXray, SkipsOutOfOrderOrNonFiniteSamples) {
   const TemporaryFolder folder;
   tasks::XrayUse broken = example_use(2);
   broken.air_kerma_mgy = std::numeric_limits<double>::quiet_NaN();
@@ -43,7 +43,7 @@ TEST(SessionXray, LeavesOutWhatIsNotLaterOrNotFinite) {
   EXPECT_EQ(session->xray, (std::vector<tasks::XrayUse>{example_use(1), example_use(3)}));
 }
 
-TEST(SessionXray, IsMissingInSessionsOfOlderProgramsAndReportedWhenChanged) {
+TEST(SessionXray, IsOptionalInOldSessionsAndCheckedForChanges) {
   const TemporaryFolder folder;
   for (const char* statement : {"DROP TABLE xray", "UPDATE xray SET beam_s = -1"}) {
     const fs::path path = folder / (statement[0] == 'D' ? "old.trocar" : "changed.trocar");

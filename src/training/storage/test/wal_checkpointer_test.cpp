@@ -27,7 +27,7 @@ void open_writer(soci::session& database, const fs::path& file) {
   database << "CREATE TABLE rows (text TEXT)";
 }
 
-TEST(WalCheckpointer, CopiesALogWhileItIsWrittenSoThatItStartsAgain) {
+TEST(WalCheckpointer, CheckpointsALogDuringWritesSoThatItRestarts) {
   const TemporaryFolder folder;
   const fs::path file = folder / "s.trocar";
   const fs::path log = file.string() + "-wal";
@@ -64,7 +64,7 @@ TEST(WalCheckpointer, DoesNotStartWithoutASession) {
   EXPECT_FALSE(checkpointer.start(folder / "missing" / "s.trocar"));
 }
 
-TEST(WalCheckpointer, LetsASessionEndAsOneFile) {
+TEST(WalCheckpointer, SessionEndsAsOneFile) {
   const TemporaryFolder folder;
   for (const bool is_finished : {true, false}) {
     const fs::path file = folder / (is_finished ? "finished.trocar" : "left.trocar");

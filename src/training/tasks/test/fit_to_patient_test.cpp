@@ -57,7 +57,7 @@ TEST(EntryZoneByLandmark, IsMeasuredOverTheSkinTowardsMidlineAndHead) {
   EXPECT_LT((fit_to_patient(task, patient).entry_zone->centre_P - on_cylinder(-60.0, -20.0)).norm(), 0.5);
 }
 
-TEST(EntryZoneByLandmark, ALandmarkThatLacksGivesNoZoneAndADoubt) {
+TEST(EntryZoneByLandmark, MissingLandmarkGivesNoZoneAndAWarning) {
   anatomy::VirtualPatient patient = cylinder();
   Task task;
   task.landmark_zone = LandmarkZone{"left spine", 30.0, 30.0, 20.0};
@@ -71,7 +71,7 @@ TEST(EntryZoneByLandmark, ALandmarkThatLacksGivesNoZoneAndADoubt) {
   EXPECT_FALSE(fit_to_patient(task, patient).entry_zone);
 }
 
-TEST(EntryZoneByLandmark, PathsArePlannedInIt) {
+TEST(EntryZoneByLandmark, PathsStartInsideIt) {
   anatomy::VirtualPatient patient = BoxPatient{}.make();
   patient.landmarks = {{"right flank", {-100.0, 0.0, 0.0}}};
   Task task = testing::liver_biopsy();
@@ -82,7 +82,7 @@ TEST(EntryZoneByLandmark, PathsArePlannedInIt) {
   for (const PlannedPath& path : *paths) EXPECT_LE((path.line_P.a - Vec3(-100.0, 0.0, 20.0)).norm(), 15.5);
 }
 
-TEST(Finding, OfSeveralLesionsTheOneOfThePatientsPathIsTheTarget) {
+TEST(Finding, TargetsTheLesionOfThePatientsPath) {
   anatomy::VirtualPatient patient = testing::make_box_patient();
   Task task = testing::make_box_task();
   task.name = "liver-biopsy";
@@ -168,7 +168,7 @@ TEST(Bevel, IsTurnedAcrossTheFibresForAnyNeedle) {
   EXPECT_EQ(bevel_to_fibres_deg(Mat3::Identity(), Vec3::UnitZ()), 0.0) << "the needle runs along the fibres";
 }
 
-TEST(AllowedNeedles, AreTheTasksListOrThoseOfTheSameUse) {
+TEST(AllowedNeedles, AreListedByTheTaskOrOfTheSameUse) {
   std::vector<Needle> all(4);
   const char* const names[] = {"gun-18", "gun-16", "spinal-22", "spinal-25"};
   for (std::size_t n = 0; n < all.size(); ++n) {

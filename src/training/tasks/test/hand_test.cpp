@@ -21,7 +21,7 @@ TEST(Hand, PullsLikeASpringAndDamper) {
   EXPECT_TRUE(force.isApprox(Vec3(3.0, 0.2, -0.3), 1e-12));
 }
 
-TEST(Hand, SpringForAnIntegratorIsTheSameForce) {
+TEST(Hand, IntegratorSpringMatchesTheForce) {
   const HandParams hand;
   const HandCommand command = wanted({1.0, -2.0, 3.0}, {4.0, 5.0, -6.0});
   const Vec3 tip_P(0.5, 0.25, -1.0);
@@ -33,7 +33,7 @@ TEST(Hand, SpringForAnIntegratorIsTheSameForce) {
   EXPECT_EQ(spring.mass_kg, hand.mass_kg);
 }
 
-TEST(Hand, TurnsTheSameWayWhateverTheStep) {
+TEST(Hand, TurnsIndependentlyOfTheStepSize) {
   const HandParams hand;
   const Mat3 wanted_R = Eigen::AngleAxisd(1.0, Vec3(1.0, 2.0, -0.5).normalized()).toRotationMatrix();
   const double half_life_s = hand.turning_time_constant_s * std::numbers::ln2;

@@ -38,7 +38,7 @@ std::vector<anatomy::Label> known_labels() {
   return labels;
 }
 
-TEST(HarmTable, HasAVerdictForEveryStructureInEveryTask) {
+TEST(HarmTable, GradesEveryStructureInEveryTask) {
   const auto tasks = load_tasks(tasks_folder());
   ASSERT_TRUE(tasks);
   const std::vector<anatomy::Label> labels = known_labels();
@@ -107,7 +107,7 @@ TEST(HarmTable, GradesByStructureTaskAndRegion) {
     }
 }
 
-TEST(HarmTable, NotchAndTimeMakeAVeinWorse) {
+TEST(HarmTable, NotchAndTimeRaiseTheGradeOfAVein) {
   const Task task = testing::liver_biopsy();
   const LabelHarm vein = find_harm(task, labelled("hepatic_vein", "vessel"));
   EXPECT_EQ(vein.grade, Harm::kMinor);
@@ -144,7 +144,7 @@ reason = "there is only one"
   EXPECT_EQ(again->risks, task->risks);
 }
 
-TEST(HarmTable, ACopyOfATaskUnderAnotherNameIsJudgedAlike) {
+TEST(HarmTable, RenamedTaskIsGradedAlike) {
   const auto tasks = load_tasks(tasks_folder());
   ASSERT_TRUE(tasks);
   for (const Task& task : *tasks) {
@@ -162,7 +162,7 @@ TEST(HarmTable, ACopyOfATaskUnderAnotherNameIsJudgedAlike) {
   }
 }
 
-TEST(HarmTable, ARowForTheTasksOwnOrganIsRefused) {
+TEST(HarmTable, RefusesARowForTheTasksOwnOrgan) {
   const auto refused = [](const std::string& row) {
     const std::string text = "base = \"liver-biopsy\"\n[[harms]]\n" + row + "grade = \"major\"\nreason = \"blood\"\n";
     const auto task = parse_task(text, "own", "own.toml", tasks_folder());

@@ -45,7 +45,7 @@ TEST(Needle, NotchAndDeadSpaceFitIntoTheThrow) {
   EXPECT_EQ(load_needle(kFile, "chiba-22g")->notch_middle_mm(), 0.0);
 }
 
-TEST(Needle, OnlyNeedlesOfTheSameUseTakeItsPlace) {
+TEST(Needle, OnlyNeedlesOfTheSameUseReplaceIt) {
   const auto needles = load_needles(kFile);
   ASSERT_TRUE(needles);
   std::vector<std::string> names;
@@ -55,7 +55,7 @@ TEST(Needle, OnlyNeedlesOfTheSameUseTakeItsPlace) {
   for (const Needle& needle : *needles) EXPECT_EQ(needle.is_biopsy, needle.use == "biopsy") << needle.name;
 }
 
-TEST(Needle, TheStoutNeedleOfAscitesLooksLikeATrocar) {
+TEST(Needle, ParacentesisNeedleUsesTheTrocarModel) {
   EXPECT_EQ(load_needle(kFile, "paracentesis-14g")->model, "trocar");
   EXPECT_EQ(load_needle(kFile, "chiba-22g")->model, "chiba");
 }

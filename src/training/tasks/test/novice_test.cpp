@@ -40,7 +40,7 @@ std::vector<Action> looks_of(const LayeredBody& body) {
   return looks;
 }
 
-TEST(Novice, LooksEveryTwoMillimetresAndStopsAtTheFluid) {
+TEST(Novice, ChecksEveryTwoMillimetresAndStopsAtTheFluid) {
   std::size_t forgot = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     const LayeredBody body = run_in_body(puncture(seed), kPath_mm - 4.0, kPath_mm + 20.0);
@@ -65,7 +65,7 @@ TEST(Novice, LooksEveryTwoMillimetresAndStopsAtTheFluid) {
   EXPECT_LE(forgot, 8u);
 }
 
-TEST(Novice, PutsTheStyletBackBeforeItGoesOn) {
+TEST(Novice, ReplacesTheStyletBeforeAdvancing) {
   const LayeredBody body = run_in_body(puncture(1), kPath_mm, kPath_mm + 20.0);
   bool is_out = false;
   for (const Action& action : body.actions) {
@@ -76,7 +76,7 @@ TEST(Novice, PutsTheStyletBackBeforeItGoesOn) {
   }
 }
 
-TEST(Novice, TriesTwoOtherWaysWhereNothingComesAndEnds) {
+TEST(Novice, TriesTwoOtherPathsWithoutReturnThenEnds) {
   const OperatorCase the_case = puncture(1);
   const LayeredBody body = run_in_body(the_case, 0.0, 0.0);
   const std::vector<Action> looks = looks_of(body);
@@ -95,7 +95,7 @@ double entry_error_mm(const OperatorCase& the_case) {
   return (away_P - away_P.dot(plan_axis_P) / axis_P.dot(plan_axis_P) * axis_P).norm();
 }
 
-TEST(Novice, MissesTheEntryInProportionToTheShareOfErrors) {
+TEST(Novice, EntryErrorScalesWithTheErrorShare) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const auto with_share = [&](double share) {
       OperatorCase the_case = puncture(seed);
@@ -110,7 +110,7 @@ TEST(Novice, MissesTheEntryInProportionToTheShareOfErrors) {
   }
 }
 
-TEST(Novice, MissesTheTargetLessWithASmallerShareOfErrors) {
+TEST(Novice, TargetErrorShrinksWithTheErrorShare) {
   const auto mean_miss_mm = [](double share) {
     double sum_mm = 0.0;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -135,7 +135,7 @@ TEST(Novice, MissesTheTargetLessWithASmallerShareOfErrors) {
   EXPECT_LT(larger_mm, 2.0) << "the way to stop";
 }
 
-TEST(Novice, FindsAHiddenLandmarkInProportionToTheFatOverIt) {
+TEST(Novice, LandmarkErrorScalesWithTheCoveringFat) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const auto with_cover = [&](double cover_mm) {
       OperatorCase the_case = puncture(seed);
@@ -149,7 +149,7 @@ TEST(Novice, FindsAHiddenLandmarkInProportionToTheFatOverIt) {
   }
 }
 
-TEST(LandmarkCover, IsTheFatAboveTheFirstMuscleOfATaskWithoutImages) {
+TEST(LandmarkCover, IsTheFatOverMuscleInALandmarkTask) {
   BoxPatient box;  // 12 mm of fat
   box.spacing_mm = 1.0;
   const anatomy::VirtualPatient patient = box.make();
@@ -166,7 +166,7 @@ TEST(LandmarkCover, IsTheFatAboveTheFirstMuscleOfATaskWithoutImages) {
   EXPECT_NEAR(landmark_cover_mm(task, patient, straight), 12.0, 1.0);
 }
 
-TEST(LastReturn, IsThatOfTheLastLook) {
+TEST(LastReturn, ComesFromTheLastCheck) {
   std::vector<Action> actions;
   EXPECT_FALSE(last_return(actions));
   actions.push_back({1.0, ActionKind::kAnaesthetise, 5.0, {}, Vec3::Zero(), 0.0});

@@ -29,7 +29,7 @@ double deepest_mm(const LayeredBody& body) {
   return deepest;
 }
 
-TEST(Expert, StopsAtTheTargetFiresOnceAndLeavesAtAnyRate) {
+TEST(Expert, FiresOnceAtTheTargetAtAnyRate) {
   for (const double dt_s : {0.004, 0.001, 0.00025}) {
     const OperatorCase the_case = case_of_length(75.0);
     LayeredBody body(the_case.path_P, skin_muscle_capsule(), dt_s);
@@ -63,7 +63,7 @@ std::vector<ActionKind> actions_of_expert(const OperatorCase& the_case, LayeredB
   return kinds;
 }
 
-TEST(Expert, TakesTheCoresThroughACoaxialNeedleOrByAnotherPuncture) {
+TEST(Expert, TakesCoresCoaxiallyOrByRepeatedPuncture) {
   for (const bool loads_inside : {true, false}) {
     OperatorCase the_case = case_of_length(75.0);
     the_case.actions.cores = 2;
@@ -107,7 +107,7 @@ struct Looking final : Operator {
   std::vector<ActionKind> kinds;
 };
 
-TEST(Expert, PressesOnWhereNothingComesBackButNotForEver) {
+TEST(Expert, AdvancesWithoutReturnUpToALimit) {
   OperatorCase the_case = case_of_length(60.0);
   the_case.fires_biopsy = false;
   the_case.actions.confirms = ActionKind::kDrawStylet;
@@ -138,7 +138,7 @@ TEST(Expert, NeverOvershootsOnPathsOfAnyLength) {
   }
 }
 
-TEST(Expert, PausesAtTheSkinAndHoldsStillBeforeItFires) {
+TEST(Expert, PausesAtTheSkinAndBeforeFiring) {
   const OperatorCase the_case = case_of_length(75.0);
   LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
   body.run(*make_expert(the_case), 60.0);
@@ -156,7 +156,7 @@ TEST(Expert, PausesAtTheSkinAndHoldsStillBeforeItFires) {
   EXPECT_LT(std::abs(speed_mm_s(body.fired[0] - 200, body.fired[0])), 1.0);
 }
 
-TEST(Expert, GivesUpWithoutFiringWhereBoneIsInTheWay) {
+TEST(Expert, GivesUpWithoutFiringAtBone) {
   const OperatorCase the_case = case_of_length(75.0);
   LayeredBody body(the_case.path_P, bone_below_skin(), 0.001);
   body.run(*make_expert(the_case), 60.0);
@@ -238,7 +238,7 @@ std::vector<Leg> legs_of(Operator& the_operator, const Segment& plan_P, LayeredB
   return watch.legs;
 }
 
-TEST(Novice, LeavesBoneTwiceAndCorrectsItsErrorsEachTime) {
+TEST(Novice, CorrectsItsErrorsAfterEachBoneContact) {
   constexpr double kBone_mm = 14.0;
   constexpr double kLeft = 0.7;        // share of the errors that a correction leaves
   constexpr double kChord_rad = 1e-4;  // this share of the way between two ends is not quite that of the angle
@@ -263,7 +263,7 @@ TEST(Novice, LeavesBoneTwiceAndCorrectsItsErrorsEachTime) {
   }
 }
 
-TEST(Novice, KeepsItsLineWhereThereIsNoBone) {
+TEST(Novice, KeepsItsLineWithoutBone) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const OperatorCase the_case = case_of_length(90.0, seed);
     LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
@@ -332,7 +332,7 @@ TEST(Replay, GivesTheRecordedDevicePosesTickByTick) {
   }
 }
 
-TEST(Replay, OfNothingIsDoneWhereTheDeviceIs) {
+TEST(Replay, EndsImmediatelyWithoutPoses) {
   OperatorView view;
   view.X_PN_device = Pose::translation({1.0, 2.0, 3.0});
   const HandCommand command = make_replay({})->next(view);
@@ -354,7 +354,7 @@ TEST(Operators, AllocateNothingInATick) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST(Operators, KeepTheirCommandsFiniteWhateverTheySee) {
+TEST(Operators, KeepCommandsFiniteForAnyView) {
   const OperatorCase the_case = case_of_length(60.0);
   for (const auto& the_operator : {make_expert, make_novice}) {
     const auto one = the_operator(the_case);

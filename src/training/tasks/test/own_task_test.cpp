@@ -51,7 +51,7 @@ Task changed_task() {
   return task;
 }
 
-TEST(OwnTask, FileSaysWhatDiffersAndGivesTheTaskBack) {
+TEST(OwnTask, FileStoresOnlyDifferencesAndRoundTrips) {
   const TemporaryFolder folder;
   const Task task = changed_task();
   const std::string text = task_to_toml(task, liver_biopsy());
@@ -69,7 +69,7 @@ TEST(OwnTask, FileSaysWhatDiffersAndGivesTheTaskBack) {
   EXPECT_EQ(*read->target_P, *task.target_P);
 }
 
-TEST(OwnTask, AZoneByItsLandmarkAndALevelAreKept) {
+TEST(OwnTask, KeepsALandmarkZoneAndALevel) {
   Task task = changed_task();
   task.entry_zone.reset();
   task.landmark_zone = LandmarkZone{"left anterior superior iliac spine", 30.0, 25.5, 20.0};
@@ -113,7 +113,7 @@ TEST(OwnTask, AnUnknownLevelIsRefusedWithTheList) {
   EXPECT_NE(twice.error().text().find("already"), std::string::npos);
 }
 
-TEST(OwnTask, NoRisksAtAllAreKept) {
+TEST(OwnTask, KeepsAnEmptyRiskList) {
   const TemporaryFolder folder;
   Task task = liver_biopsy();
   task.risks.clear();
@@ -140,7 +140,7 @@ TEST(OwnTask, WeightsThatContradictAreRefused) {
   EXPECT_NE(error_of("guidance = \"magic\"\n").find("palpation"), std::string::npos);
 }
 
-TEST(OwnTask, DamagedFileIsRefusedWithItsPlace) {
+TEST(OwnTask, RefusesADamagedFileWithItsLocation) {
   const TemporaryFolder folder;
   const auto error_of = [&](const std::string& text) {
     EXPECT_TRUE(write_file_atomically(folder / kOwnTaskFile, text));
@@ -165,7 +165,7 @@ TEST(OwnTask, DamagedFileIsRefusedWithItsPlace) {
             std::string::npos);
 }
 
-TEST(OwnTask, PathsArePlannedToThePointAndFromTheZone) {
+TEST(OwnTask, PlansPathsFromTheZoneToThePoint) {
   const anatomy::VirtualPatient patient = BoxPatient{}.make();
   Task task = liver_biopsy();
   task.target_P = Vec3(-45.0, 10.0, 5.0);
@@ -254,7 +254,7 @@ TEST(AssessPath, NamesEveryFaultOfADrawnPath) {
   EXPECT_TRUE(has(assessment, PathFault::kOrganPath));
 }
 
-TEST(AssessPath, FindsTheSkinAlongALineAndNextToAPoint) {
+TEST(AssessPath, FindsTheSkinAlongALineAndNearAPoint) {
   const anatomy::VirtualPatient patient = BoxPatient{}.make();
   const auto entry = find_skin_entry(patient, {-30.0, 0.0, 0.0}, {-50.0, 0.0, 0.0});
   ASSERT_TRUE(entry);

@@ -22,7 +22,7 @@ std::string phase(const std::string& name, const std::string& after, const std::
          done + "\n";
 }
 
-TEST(Phases, ComeWithTheirConditions) {
+TEST(Phases, ParseWithTheirConditions) {
   const auto phases =
       parse(phase("a", "", "tip_in = \"csf\"\ninserted_mm = 12.5") + phase("b", "\"a\"", "returned = \"csf\""));
   ASSERT_TRUE(phases) << phases.error().text();
@@ -35,7 +35,7 @@ TEST(Phases, ComeWithTheirConditions) {
   EXPECT_EQ(condition_words((*phases)[1].done[0]), "check what comes back: it has to be spinal fluid");
 }
 
-TEST(Phases, MistakesAreNamed) {
+TEST(Phases, ErrorsNameTheMistake) {
   EXPECT_NE(phases_error(phase("a", "\"b\"", "fired = true")).find("after \"b\", which does not exist"),
             std::string::npos);
   EXPECT_NE(phases_error(phase("a", "\"c\"", "fired = true") + phase("b", "\"a\"", "outside = true") +
@@ -52,7 +52,7 @@ TEST(Phases, MistakesAreNamed) {
   EXPECT_NE(phases_error(phase("a", "", "returned = \"wine\"")).find("no substance"), std::string::npos);
 }
 
-TEST(Phases, TheExampleOfTheDocumentationIsAWholeTask) {
+TEST(Phases, DocumentedExampleIsAValidTask) {
   const auto task =
       load_task_file(data_dir().parent_path() / "docs" / "examples" / "renal-biopsy.toml", data_dir() / "tasks");
   ASSERT_TRUE(task) << task.error().text();
@@ -60,7 +60,7 @@ TEST(Phases, TheExampleOfTheDocumentationIsAWholeTask) {
   EXPECT_EQ(task->phases.size(), 3U);
 }
 
-TEST(Phases, OfShippedTasksComeBackFromTheirText) {
+TEST(Phases, OfShippedTasksRoundTripThroughText) {
   const auto tasks = load_tasks(data_dir() / "tasks");
   ASSERT_TRUE(tasks) << tasks.error().text();
   for (const Task& task : *tasks) {

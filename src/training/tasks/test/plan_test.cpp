@@ -69,7 +69,7 @@ BoxPatient crowded() {
   return box;
 }
 
-TEST(Plan, BestPathGoesStraightDownWhereNothingIsInTheWay) {
+TEST(Plan, BestPathIsStraightDownWithoutObstacles) {
   const BoxPatient box;
   const auto paths = plan_paths(liver_biopsy(), box.make(), shipped_needle());
   ASSERT_TRUE(paths) << paths.error().text();
@@ -86,7 +86,7 @@ TEST(Plan, BestPathGoesStraightDownWhereNothingIsInTheWay) {
   EXPECT_EQ(path.spare_margin_mm, 10.0);
 }
 
-TEST(Plan, NeedleThatIsNotFiredIsPutIntoTheTarget) {
+TEST(Plan, UnfiredNeedleEndsInTheTarget) {
   const BoxPatient box;
   const auto paths = plan_paths(liver_biopsy(), box.make(), shipped_needle("chiba-22g"));
   ASSERT_TRUE(paths) << paths.error().text();
@@ -123,7 +123,7 @@ TEST(Plan, BestPathPassesARibWithSpareMargin) {
   EXPECT_GT(best.spare_margin_mm, 4.0);
 }
 
-TEST(Plan, SpareMarginIsWorthLengthTheMoreTheLessThereIs) {
+TEST(Plan, ScarceMarginIsWorthMoreLength) {
   EXPECT_DOUBLE_EQ(path_cost_mm(80.0, 10.0), 80.0);
   EXPECT_DOUBLE_EQ(path_cost_mm(80.0, 25.0), 80.0);
   EXPECT_DOUBLE_EQ(path_cost_mm(80.0, 0.0), 100.0);
@@ -139,7 +139,7 @@ TEST(Plan, SpareMarginIsWorthLengthTheMoreTheLessThereIs) {
 }
 
 // The planner checks candidates in the order of a bound; nothing that it leaves unchecked may be better.
-TEST(Plan, OnePathIsTheBestOfAll) {
+TEST(Plan, SinglePathIsTheBestOfMany) {
   const anatomy::VirtualPatient patient = crowded().make();
   const auto one = plan_paths(liver_biopsy(), patient, shipped_needle(), {1, 3});
   const auto all =
@@ -153,7 +153,7 @@ TEST(Plan, OnePathIsTheBestOfAll) {
                              [](const PlannedPath& a, const PlannedPath& b) { return a.cost_mm < b.cost_mm; }));
 }
 
-TEST(Plan, EveryPathKeepsEveryMarginOverTheWholeThrow) {
+TEST(Plan, PathsKeepMarginsOverTheWholeThrow) {
   const Task task = liver_biopsy();
   const anatomy::VirtualPatient patient = crowded().make();
   const auto paths = plan_paths(task, patient, shipped_needle(), {40, 3});
@@ -167,7 +167,7 @@ TEST(Plan, EveryPathKeepsEveryMarginOverTheWholeThrow) {
   }
 }
 
-TEST(Plan, EveryPathPassesSkinMuscleAndLiverInThisOrderAndStaysInside) {
+TEST(Plan, PathsPassSkinMuscleAndLiverInOrder) {
   const Task task = liver_biopsy();
   const anatomy::VirtualPatient patient = crowded().make();
   const auto paths = plan_paths(task, patient, shipped_needle(), {60, 4});
@@ -198,7 +198,7 @@ TEST(Plan, EveryPathPassesSkinMuscleAndLiverInThisOrderAndStaysInside) {
   }
 }
 
-TEST(Plan, PathsAreSortedApartAndTheSameForTheSameSeed) {
+TEST(Plan, PathsAreSortedDistinctAndDeterministic) {
   const anatomy::VirtualPatient patient = crowded().make();
   const auto a = plan_paths(liver_biopsy(), patient, shipped_needle(), {12, 5});
   const auto b = plan_paths(liver_biopsy(), patient, shipped_needle(), {12, 5});
@@ -218,7 +218,7 @@ TEST(Plan, PathsAreSortedApartAndTheSameForTheSameSeed) {
   EXPECT_TRUE(differs);
 }
 
-TEST(Plan, ManyPathsAreManyDifferentPaths) {
+TEST(Plan, ManyPathsAreDistinct) {
   const auto paths = plan_paths(liver_biopsy(), crowded().make(), shipped_needle(), {3000, 1});
   ASSERT_TRUE(paths) << paths.error().text();
   EXPECT_EQ(paths->size(), 3000u);
@@ -227,7 +227,7 @@ TEST(Plan, ManyPathsAreManyDifferentPaths) {
   EXPECT_EQ(entries.size(), paths->size());
 }
 
-TEST(Plan, WithoutLesionTheTargetIsDeepInTheLiverAndAwayFromVessels) {
+TEST(Plan, TargetsDeepLiverWithoutALesion) {
   BoxPatient box = crowded();
   box.lesion_radius_mm = 0.0;
   const anatomy::VirtualPatient patient = box.make();
@@ -259,7 +259,7 @@ TEST(Plan, PatientLiesOnTheBack) {
   for (const PlannedPath& path : *paths) EXPECT_LT(path.line_P.a.y(), 69.0);
 }
 
-TEST(Plan, EntriesKeepAwayFromTheCutFacesOfTheVolume) {
+TEST(Plan, EntriesAvoidTheCutFacesOfTheVolume) {
   BoxPatient box;
   box.half_volume_mm.z() = 30.0;
   const auto paths = plan_paths(liver_biopsy(), box.make(), shipped_needle(), {300, 1});

@@ -28,7 +28,7 @@ anatomy::VirtualPatient open_at_the_back() {
   return box.make();
 }
 
-TEST(Postures, TheChosenOneAlone) {
+TEST(Postures, UseOnlyTheChosenOne) {
   const anatomy::VirtualPatient patient = BoxPatient{}.make();
   Task task = liver_biopsy();
   EXPECT_EQ(postures_to_try(task, patient), std::vector{Posture::kSupine});
@@ -39,7 +39,7 @@ TEST(Postures, TheChosenOneAlone) {
   EXPECT_EQ(postures_to_try(task, patient), std::vector{Posture::kLeftLateral});
 }
 
-TEST(Postures, ThePatientsOwnIsTheFirstOfTheTasks) {
+TEST(Postures, TryThePatientsOwnFirst) {
   anatomy::VirtualPatient patient = BoxPatient{}.make();
   patient.posture = Posture::kSitting;
   Task task = liver_biopsy();
@@ -47,7 +47,7 @@ TEST(Postures, ThePatientsOwnIsTheFirstOfTheTasks) {
   EXPECT_EQ(postures_to_try(task, patient), (std::vector{Posture::kSitting, Posture::kLeftLateral, Posture::kProne}));
 }
 
-TEST(Postures, TheFirstWithAPathIsTaken) {
+TEST(Postures, UseTheFirstWithAPath) {
   const anatomy::VirtualPatient patient = open_at_the_back();
   Task task = liver_biopsy();
   ASSERT_FALSE(plan_paths(task, patient, shipped_needle()));
@@ -70,7 +70,7 @@ TEST(Postures, TheFirstWithAPathIsTaken) {
   EXPECT_FALSE(assess_path(planned, patient, shipped_needle(), paths->front().line_P).findings.empty());
 }
 
-TEST(Postures, ARefusalNamesEachAndWhatIsInTheWay) {
+TEST(Postures, RefusalNamesEachWithItsObstacle) {
   const anatomy::VirtualPatient patient = open_at_the_back();
   Task task = liver_biopsy();
   task.postures = {Posture::kSupine};
@@ -87,7 +87,7 @@ TEST(Postures, ARefusalNamesEachAndWhatIsInTheWay) {
     EXPECT_NE(both.error().what.find(words), std::string::npos) << both.error().text();
 }
 
-TEST(LeastTarget, IsAskedOfOnePieceOfTheLabel) {
+TEST(LeastTarget, AppliesToOneConnectedPiece) {
   BoxPatient box;
   const auto has_paths = [&](double least_ml) {
     Task task = liver_biopsy();
@@ -105,7 +105,7 @@ TEST(LeastTarget, IsAskedOfOnePieceOfTheLabel) {
   EXPECT_FALSE(has_paths(0.01));
 }
 
-TEST(LeastTarget, PiecesThatDoNotTouchAreNotAdded) {
+TEST(LeastTarget, DoesNotSumSeparatePieces) {
   BoxPatient box;
   box.lesion_radius_mm = 0.0;
   box.special = [](const Vec3& p) -> std::string {
@@ -120,7 +120,7 @@ TEST(LeastTarget, PiecesThatDoNotTouchAreNotAdded) {
       << readiness.reasons.front();
 }
 
-TEST(ShippedTasks, LumbarPunctureIsNeverDoneOnTheBackAndPtcdNeedsDucts) {
+TEST(ShippedTasks, ExcludeSupineLumbarPunctureAndRequireDuctsForPtcd) {
   const Task lumbar = *load_task(data_dir() / "tasks", "lumbar-puncture");
   ASSERT_FALSE(lumbar.postures.empty());
   EXPECT_EQ(lumbar.postures.front(), Posture::kLeftLateral);

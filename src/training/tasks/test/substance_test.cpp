@@ -18,7 +18,7 @@ SubstanceTable shipped() {
   return table.value_or(SubstanceTable{});
 }
 
-TEST(Substances, ComeFromLabelsBeforeTissues) {
+TEST(Substances, PreferLabelsOverTissues) {
   const SubstanceTable table = shipped();
   EXPECT_EQ(table.of({1, "urinary_bladder", "fluid"}, false), Substance::kUrine);
   EXPECT_EQ(table.of({1, "kidney_cyst_left", "fluid"}, false), Substance::kFluid);
@@ -29,7 +29,7 @@ TEST(Substances, ComeFromLabelsBeforeTissues) {
   EXPECT_EQ(table.of({1, "fat", "adipose"}, true), Substance::kNothing);
 }
 
-TEST(Substances, EveryNameIsFoundAgain) {
+TEST(Substances, NamesRoundTrip) {
   for (int n = 0; n <= static_cast<int>(kLastSubstance); ++n) {
     const auto substance = static_cast<Substance>(n);
     EXPECT_EQ(find_substance(to_string(substance)), substance);
@@ -46,7 +46,7 @@ Return at(double x_mm, const Vec3& axis_P, double bevel_deg, bool is_aspirated =
   return what_returns(shipped(), testing::make_box_patient(), needle, {x_mm, 60.0, 50.0}, axis_P, is_aspirated);
 }
 
-TEST(WhatReturns, IsWhatTheBevelLiesIn) {
+TEST(WhatReturns, IsTheSubstanceAtTheBevel) {
   EXPECT_EQ(at(22.0, Vec3::UnitX(), 45.0).substance, Substance::kBlood);
   EXPECT_NEAR(at(23.0, Vec3::UnitX(), 45.0).share, 1.0, 1e-9) << "the opening is 2 mm long";
   EXPECT_EQ(at(40.0, Vec3::UnitX(), 45.0).substance, Substance::kNothing);
@@ -54,7 +54,7 @@ TEST(WhatReturns, IsWhatTheBevelLiesIn) {
   EXPECT_EQ(at(500.0, Vec3::UnitX(), 45.0).substance, Substance::kNothing) << "outside of the CT";
 }
 
-TEST(WhatReturns, ComesSlowlyWithAPartOfTheBevel) {
+TEST(WhatReturns, IsSlowForAPartlyCoveredBevel) {
   // The opening of 2 mm / tan 10° = 11.3 mm reaches back over the vessel's 5 mm.
   const Return part = at(23.0, Vec3::UnitX(), 10.0);
   EXPECT_EQ(part.substance, Substance::kBlood);

@@ -23,7 +23,7 @@ bool mentions(const TaskReadiness& readiness, std::string_view text) {
   return false;
 }
 
-TEST(Task, ShippedTasksAreReadableAndNameKnownTissuesAndNeedles) {
+TEST(Task, ShippedTasksNameKnownTissuesAndNeedles) {
   const auto tasks = load_tasks(tasks_folder());
   ASSERT_TRUE(tasks) << tasks.error().text();
   ASSERT_FALSE(tasks->empty());
@@ -54,7 +54,7 @@ TEST(Task, LiverBiopsyPassesTenMillimetresOfLiver) {
   EXPECT_EQ(task.cores, 2u);
 }
 
-TEST(Task, ARiskNamedByItsTissueIsNeitherTheOrganNorTheTarget) {
+TEST(Task, TissueRiskExcludesOrganAndTarget) {
   Task task;
   task.organ = "pancreas";
   task.target_tissues = {"fluid"};
@@ -74,13 +74,13 @@ TEST(Task, UnknownNameListsTheKnownOnes) {
   EXPECT_NE(task.error().advice.find("liver-biopsy"), std::string::npos);
 }
 
-TEST(Task, MissingFolderSaysWhatToDo) {
+TEST(Task, AdvisesForAMissingFolder) {
   const auto tasks = load_tasks("/nonexistent/tasks");
   ASSERT_FALSE(tasks);
   EXPECT_NE(tasks.error().text().find("TROCAR_DATA_DIR"), std::string::npos);
 }
 
-TEST(Task, DamagedTaskIsRefusedWithItsPlace) {
+TEST(Task, RefusesADamagedTaskWithItsLocation) {
   const std::string good = *read_file(tasks_folder() / "liver-biopsy.toml");
   const TemporaryFolder folder;
   ASSERT_TRUE(std::filesystem::create_directory(folder / "tasks"));
@@ -109,7 +109,7 @@ TEST(TaskReadiness, CompletePatientServesTheTask) {
   EXPECT_FALSE(mentions(readiness, "cut by the border"));
 }
 
-TEST(TaskReadiness, WithoutLesionTheTargetIsParenchymal) {
+TEST(TaskReadiness, IsParenchymalWithoutALesion) {
   BoxPatient box;
   box.lesion_radius_mm = 0.0;
   const auto readiness = check_task(liver_biopsy(), box.make());
@@ -118,7 +118,7 @@ TEST(TaskReadiness, WithoutLesionTheTargetIsParenchymal) {
   EXPECT_TRUE(mentions(readiness, "no lesion is labelled"));
 }
 
-TEST(TaskReadiness, ATaskWithoutTargetTissueIsParenchymalBesideALesion) {
+TEST(TaskReadiness, IsParenchymalWithoutTargetTissue) {
   tasks::Task task = liver_biopsy();
   task.target_tissues.clear();
   const auto readiness = check_task(task, BoxPatient{}.make());
@@ -127,7 +127,7 @@ TEST(TaskReadiness, ATaskWithoutTargetTissueIsParenchymalBesideALesion) {
   EXPECT_TRUE(mentions(readiness, "the task has no target tissue"));
 }
 
-TEST(TaskReadiness, OfAnotherPartOfTheBodyNamesWhatTheScanShows) {
+TEST(TaskReadiness, NamesLabelsOfAnotherBodyPart) {
   BoxPatient head;
   head.special = [](const Vec3& p) {
     const double depth_mm = -BoxPatient::skin_distance(p);
@@ -159,7 +159,7 @@ TEST(TaskReadiness, NamesWhatMakesTheTaskImpossible) {
   EXPECT_TRUE(mentions(check_task(liver_biopsy(), inside_only.make()), "skin's surface"));
 }
 
-TEST(TaskReadiness, ARiskThatIsOptionalIsNotMissed) {
+TEST(TaskReadiness, IgnoresAMissingOptionalRisk) {
   Task task = liver_biopsy();
   task.risks.push_back({"", "epigastric_zone", 2.0, false, {}});
   EXPECT_TRUE(mentions(check_task(task, BoxPatient{}.make()), "epigastric_zone"));
@@ -167,7 +167,7 @@ TEST(TaskReadiness, ARiskThatIsOptionalIsNotMissed) {
   EXPECT_FALSE(mentions(check_task(task, BoxPatient{}.make()), "epigastric_zone"));
 }
 
-TEST(TaskReadiness, TellsWhenTheOrganIsCut) {
+TEST(TaskReadiness, ReportsACutOrgan) {
   BoxPatient cut;
   cut.half_volume_mm.z() = 40.0;
   EXPECT_TRUE(mentions(check_task(liver_biopsy(), cut.make()), "cut by the border"));

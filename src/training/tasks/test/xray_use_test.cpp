@@ -12,7 +12,7 @@ XrayUse use_of(double time_s, double contrast_ml) {
   return use;
 }
 
-TEST(ContrastInjections, AreRisesWithoutAPause) {
+TEST(ContrastInjections, AreContinuousRises) {
   const std::vector<XrayUse> uses{use_of(0.0, 0.0), use_of(1.0, 0.5), use_of(1.3, 0.8), use_of(1.4, 0.8),
                                   use_of(3.0, 0.8), use_of(3.1, 1.0), use_of(3.2, 1.5)};
   const std::vector<ContrastInjection> found = find_injections(uses);

@@ -139,7 +139,7 @@ TEST(GamepadMotion, IsContinuousAtTheDeadZoneAndGrowsWithTheStick) {
   EXPECT_DOUBLE_EQ(last, kPadSpeed_mm_per_s);
 }
 
-TEST(GamepadMotion, CornerOfTheStickIsNoFaster) {
+TEST(GamepadMotion, DiagonalStickIsNoFaster) {
   GamepadState state;
   state.left_x = state.left_y = 1.0;
   EXPECT_NEAR(gamepad_motion(state).v_D.norm(), kPadSpeed_mm_per_s, 1e-9);
@@ -157,7 +157,7 @@ TEST(GamepadMotion, RightStickSwingsTheTipToWhereItPoints) {
   EXPECT_GT(tip_after(0.0, -1.0).y(), 0.01);  // pushed away
 }
 
-TEST(GamepadMotion, TriggersGoAlongTheNeedleAndShouldersTurnIt) {
+TEST(GamepadMotion, TriggersMoveAlongTheNeedleAndShouldersTurnIt) {
   GamepadState state;
   state.right_trigger = 1.0;
   EXPECT_DOUBLE_EQ(gamepad_motion(state).inward_mm_per_s, kPadInward_mm_per_s);
@@ -169,7 +169,7 @@ TEST(GamepadMotion, TriggersGoAlongTheNeedleAndShouldersTurnIt) {
   EXPECT_DOUBLE_EQ(gamepad_motion(state).v_D.z(), -kPadSpeed_mm_per_s);
 }
 
-TEST(GamepadMotion, NonsenseIsTheMiddleOrTheEnd) {
+TEST(GamepadMotion, ClampsInvalidAxisValues) {
   for (const double bad : {kNaN, kInfinity, -kInfinity, 1e200}) {
     const GamepadState state{bad, bad, bad, bad, bad, bad};
     const PointerMotion motion = gamepad_motion(state);
@@ -188,7 +188,7 @@ TEST(RumblePower, IsLinearBetweenItsEnds) {
   EXPECT_EQ(rumble_power(kNaN), 0.0);
 }
 
-TEST(Gamepad, WithoutOneSaysWhatToDo) {
+TEST(Gamepad, ErrorExplainsHowToConnectOne) {
   const auto device = PolledPointer::open(gamepad(), make_gamepad_source());
   if (device.has_value()) GTEST_SKIP() << "a real gamepad is connected";
   EXPECT_NE(device.error().text().find("connect or pair one"), std::string::npos);
@@ -210,7 +210,7 @@ TEST(Gamepad, StickMovesTheStylus) {
   EXPECT_NEAR((X_DS.R() - pointer_start().R()).norm(), 0.0, 1e-9);
 }
 
-TEST(Gamepad, TriggerGoesDownIntoTheBody) {
+TEST(Gamepad, TriggerMovesDownIntoTheBody) {
   VirtualPad pad;
   const auto device = open_pad();
   ASSERT_NE(device, nullptr);
@@ -219,7 +219,7 @@ TEST(Gamepad, TriggerGoesDownIntoTheBody) {
   EXPECT_TRUE(reads_until(*device, now_s, [](const DeviceReading& r) { return r.X_DS.p().z() < -2.0; }));
 }
 
-TEST(Gamepad, ButtonsComeThrough) {
+TEST(Gamepad, ReportsButtons) {
   VirtualPad pad;
   const auto device = open_pad();
   ASSERT_NE(device, nullptr);
@@ -234,7 +234,7 @@ TEST(Gamepad, ButtonsComeThrough) {
   EXPECT_TRUE(reads_until(*device, now_s, [](const DeviceReading& r) { return r.buttons == 0; }));
 }
 
-TEST(Gamepad, ForceRumblesAndEndsWithTheWrites) {
+TEST(Gamepad, RumblesWhileForceIsWritten) {
   VirtualPad pad;
   auto device = open_pad();
   ASSERT_NE(device, nullptr);
@@ -261,7 +261,7 @@ TEST(Gamepad, ForceThatIsNotFiniteIsRefused) {
   EXPECT_TRUE(device->write({Vec3(1e10, 0, 0), Vec3::Zero()}));
 }
 
-TEST(Gamepad, UnpluggedIsGoneAndComesBackWhereItWas) {
+TEST(Gamepad, ReconnectsAtItsLastPose) {
   VirtualPad pad;
   const auto device = open_pad();
   ASSERT_NE(device, nullptr);

@@ -64,7 +64,7 @@ TEST(PointerDevice, NeverMovesOrTurnsFasterThanAHand) {
   EXPECT_LT(haptics::rotation_vector(before.R() * far.X_DS.R().transpose()).norm(), 1e-6);
 }
 
-TEST(PointerDevice, StaysWhereItIsLetGo) {
+TEST(PointerDevice, StaysWhereItIsReleased) {
   PointerDevice device({}, {});
   device.read(0.0);
   device.hold(pointing({10.0, 0.0, 0.0}, 0.0));
@@ -72,7 +72,7 @@ TEST(PointerDevice, StaysWhereItIsLetGo) {
   for (int i = 1; i < 100; ++i) EXPECT_EQ(device.read(i * kPointerTick_s).X_DS.p().x(), 10.0);
 }
 
-TEST(PointerDevice, IsPutInPlaceAndLedRigidly) {
+TEST(PointerDevice, FollowsPlacementsRigidly) {
   PointerDevice device({}, {});
   device.read(0.0);
   device.hold(pointing(Vec3::Zero(), 0.0));
@@ -89,7 +89,7 @@ TEST(PointerDevice, IsPutInPlaceAndLedRigidly) {
   EXPECT_EQ(reading.buttons, kButtonMain);
 }
 
-TEST(PointerDevice, IgnoresHandsAndClocksThatAreNotFinite) {
+TEST(PointerDevice, IgnoresNonFiniteHandsAndTimes) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   PointerDevice device({}, {});
   device.read(0.0);

@@ -40,7 +40,7 @@ class SteadySource final : public PointerSource {
   const std::atomic<bool>& is_silent_;
 };
 
-TEST(MovePointer, IsStraightInClosedForm) {
+TEST(MovePointer, MatchesTheClosedFormForAStraightMotion) {
   PointerMotion motion;
   motion.v_D = Vec3(1.0, 2.0, 3.0);
   motion.inward_mm_per_s = 10.0;  // down at the start
@@ -49,7 +49,7 @@ TEST(MovePointer, IsStraightInClosedForm) {
   EXPECT_NEAR((moved.R() - pointer_start().R()).norm(), 0.0, 1e-12);
 }
 
-TEST(MovePointer, TurningTurnsTheBevelAndNotTheNeedle) {
+TEST(MovePointer, TurningRotatesTheBevelOnly) {
   PointerMotion motion;
   motion.turning_rad_per_s = 1.0;
   const Mat3 R_DS = move_pointer(pointer_start(), motion, 0.5, kRadius_mm).R();
@@ -57,7 +57,7 @@ TEST(MovePointer, TurningTurnsTheBevelAndNotTheNeedle) {
   EXPECT_NEAR(angle_between_rad(R_DS.col(1), pointer_start().R().col(1)), 0.5, 1e-12);
 }
 
-TEST(MovePointer, StaysInTheWorkspaceAndARotationWhateverIsAsked) {
+TEST(MovePointer, StaysInTheWorkspaceForAnyRequest) {
   Random random(7);
   Pose X_DS = pointer_start();
   constexpr int kSteps = 20'000;
@@ -70,7 +70,7 @@ TEST(MovePointer, StaysInTheWorkspaceAndARotationWhateverIsAsked) {
   }
 }
 
-TEST(MovePointer, NonsenseMovesNothing) {
+TEST(MovePointer, IgnoresNonFiniteInput) {
   const Pose start = pointer_start();
   for (const double bad : {kNaN, kInfinity}) {
     EXPECT_EQ(move_pointer(start, sideways(bad), 0.01, kRadius_mm).p(), start.p());
@@ -80,7 +80,7 @@ TEST(MovePointer, NonsenseMovesNothing) {
   EXPECT_TRUE(move_pointer(start, sideways(1e308), 1e10, kRadius_mm).is_finite());
 }
 
-TEST(PolledPointer, MovesOnAtEveryReadingAndStopsWhenItsThreadHangs) {
+TEST(PolledPointer, MovesAtEveryReadAndStopsIfItsThreadHangs) {
   std::atomic<bool> is_silent{false};
   haptics::DevicePreset preset;
   preset.workspace_radius_mm = kRadius_mm;
@@ -107,7 +107,7 @@ TEST(PolledPointer, MovesOnAtEveryReadingAndStopsWhenItsThreadHangs) {
   EXPECT_TRUE(testing::wait_until([&] { return (*device)->read(now_s).status == DeviceStatus::kFresh; }));
 }
 
-TEST(PolledPointer, IsPlacedOnceAndGoesOnFromThere) {
+TEST(PolledPointer, ContinuesFromAPlacement) {
   const std::atomic<bool> is_silent{false};
   haptics::DevicePreset preset;
   preset.workspace_radius_mm = kRadius_mm;
@@ -130,7 +130,7 @@ TEST(PolledPointer, IsPlacedOnceAndGoesOnFromThere) {
   EXPECT_EQ((*device)->read(1.01).X_DS.p(), moved.p());
 }
 
-TEST(PolledPointer, WithoutAThreadIsNotOpenedAndAReconnectIsRefused) {
+TEST(PolledPointer, FailsToOpenAndReconnectWithoutAThread) {
   const std::atomic<bool> is_silent{false};
   haptics::DevicePreset preset;
   preset.workspace_radius_mm = kRadius_mm;

@@ -32,7 +32,7 @@ std::unique_ptr<HapticDevice> open_cap(const SpacenavDaemon& daemon) {
   return device ? std::move(*device) : nullptr;
 }
 
-TEST(SpaceMouseMotion, PushesBecomeDevicesAxes) {
+TEST(SpaceMouseMotion, MapsPushesToDeviceAxes) {
   // Right, up, away.
   EXPECT_NEAR((spacemouse_motion({{kFullCounts, 0, 0, 0, 0, 0}}, 0).v_D - kCapSpeed_mm_per_s * Vec3::UnitX()).norm(), 0,
               1e-9);
@@ -42,14 +42,14 @@ TEST(SpaceMouseMotion, PushesBecomeDevicesAxes) {
               1e-9);
 }
 
-TEST(SpaceMouseMotion, TurnsBecomeDevicesAxes) {
+TEST(SpaceMouseMotion, MapsTurnsToDeviceAxes) {
   // As libspnav turns an object of OpenGL (x right, y up, z to the viewer): about (rx, ry, -rz).
   EXPECT_GT(spacemouse_motion({{0, 0, 0, kFullCounts, 0, 0}}, 0).w_D.x(), 0.0);
   EXPECT_GT(spacemouse_motion({{0, 0, 0, 0, kFullCounts, 0}}, 0).w_D.z(), 0.0);  // about up
   EXPECT_GT(spacemouse_motion({{0, 0, 0, 0, 0, kFullCounts}}, 0).w_D.y(), 0.0);  // about away
 }
 
-TEST(SpaceMouseMotion, RestsInTheDeadZoneAndEndsAtFullSpeed) {
+TEST(SpaceMouseMotion, RestsInTheDeadZoneAndSaturatesAtFullSpeed) {
   const int rest = static_cast<int>(kCapDeadZone_counts);
   const PointerMotion still = spacemouse_motion({{rest, -rest, rest, -rest, rest, -rest}}, kButtonSecond);
   EXPECT_TRUE(still.v_D.isZero(0.0));
@@ -62,7 +62,7 @@ TEST(SpaceMouseMotion, RestsInTheDeadZoneAndEndsAtFullSpeed) {
   }
 }
 
-TEST(SpaceMouse, WithoutADaemonSaysHowToGetIt) {
+TEST(SpaceMouse, ErrorExplainsHowToStartTheDaemon) {
   const auto device = PolledPointer::open(spacemouse(), make_spacemouse_source());
   if (device.has_value()) GTEST_SKIP() << "a real spacenavd runs here";
   EXPECT_NE(device.error().text().find("start spacenavd"), std::string::npos);
@@ -80,7 +80,7 @@ TEST(SpaceMouse, CapMovesTheStylus) {
   EXPECT_NEAR(device->read(now_s).X_DS.p().head<2>().norm(), 0.0, 1e-9);
 }
 
-TEST(SpaceMouse, CapThatFellSilentIsLetGo) {
+TEST(SpaceMouse, ReleasesASilentCap) {
   SpacenavDaemon daemon;
   const auto device = open_cap(daemon);
   ASSERT_NE(device, nullptr);
@@ -96,7 +96,7 @@ TEST(SpaceMouse, CapThatFellSilentIsLetGo) {
   }));
 }
 
-TEST(SpaceMouse, ButtonsComeThrough) {
+TEST(SpaceMouse, ReportsButtons) {
   SpacenavDaemon daemon;
   const auto device = open_cap(daemon);
   ASSERT_NE(device, nullptr);
@@ -109,7 +109,7 @@ TEST(SpaceMouse, ButtonsComeThrough) {
   EXPECT_TRUE(reads_until(*device, now_s, [](const DeviceReading& r) { return r.buttons == kButtonSecond; }));
 }
 
-TEST(SpaceMouse, ADaemonOfOldIsUnderstood) {
+TEST(SpaceMouse, AcceptsAnOlderDaemon) {
   SpacenavDaemon daemon(false);
   const auto device = open_cap(daemon);
   ASSERT_NE(device, nullptr);
@@ -118,7 +118,7 @@ TEST(SpaceMouse, ADaemonOfOldIsUnderstood) {
   EXPECT_TRUE(reads_until(*device, now_s, [](const DeviceReading& r) { return r.buttons == kButtonMain; }));
 }
 
-TEST(SpaceMouse, NonsenseIsPassedOver) {
+TEST(SpaceMouse, SkipsMalformedEvents) {
   SpacenavDaemon daemon;
   const auto device = open_cap(daemon);
   ASSERT_NE(device, nullptr);
@@ -134,7 +134,7 @@ TEST(SpaceMouse, NonsenseIsPassedOver) {
   EXPECT_TRUE(device->read(now_s).X_DS.is_finite());
 }
 
-TEST(SpaceMouse, UnpluggedIsGoneAndReconnects) {
+TEST(SpaceMouse, ReconnectsAfterUnplugging) {
   SpacenavDaemon daemon;
   const auto device = open_cap(daemon);
   ASSERT_NE(device, nullptr);
@@ -147,7 +147,7 @@ TEST(SpaceMouse, UnpluggedIsGoneAndReconnects) {
   EXPECT_TRUE(reads_until(*device, now_s, [](const DeviceReading& r) { return r.status == DeviceStatus::kFresh; }));
 }
 
-TEST(SpaceMouse, DaemonThatDiesIsGone) {
+TEST(SpaceMouse, ReportsADeadDaemonAsDisconnected) {
   double now_s = 0.0;
   auto daemon = std::make_unique<SpacenavDaemon>();
   const auto device = open_cap(*daemon);

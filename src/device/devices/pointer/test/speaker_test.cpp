@@ -23,7 +23,7 @@ double loudest(const std::vector<float>& samples, double from_s, double to_s) {
   return most;
 }
 
-TEST(Speaker, TheGunClicksTwiceAndEndsInSilence) {
+TEST(Speaker, GunClicksTwiceThenStaysSilent) {
   const std::vector<float> click = make_gun_click();
   EXPECT_TRUE(std::all_of(click.begin(), click.end(), [](float s) { return std::isfinite(s) && std::abs(s) <= 1.0F; }));
   const double stylet = loudest(click, 0.0, 0.01), between = loudest(click, 0.045, 0.06);
@@ -69,7 +69,7 @@ bool eventually(const std::function<bool()>& is_true) {
   return true;
 }
 
-TEST(Speaker, OpensNothingWhereThereIsNoOutput) {
+TEST(Speaker, StaysClosedWithoutAnOutput) {
   const DiskDriver none("no such driver");
   Speaker speaker;
   ASSERT_TRUE(eventually([&] { return !speaker.is_opening(); }));
@@ -77,7 +77,7 @@ TEST(Speaker, OpensNothingWhereThereIsNoOutput) {
   speaker.play(make_gun_click());  // dropped
 }
 
-TEST(Speaker, PlaysOnTheOutput) {
+TEST(Speaker, PlaysThroughTheOutput) {
   const DiskDriver disk;
   Speaker speaker;
   ASSERT_TRUE(eventually([&] { return speaker.is_open(); }));

@@ -8,7 +8,7 @@
 namespace trocar::devices {
 namespace {
 
-TEST(FaultSchedule, ReadsKindAmountBeginningAndDuration) {
+TEST(FaultSchedule, ReadsKindAmountStartAndDuration) {
   const auto jitter = parse_fault("jitter:0.3@1+2");
   ASSERT_TRUE(jitter) << jitter.error().text();
   EXPECT_EQ(jitter->fault, DeviceFault::kJitter);
@@ -42,7 +42,7 @@ TEST(FaultSchedule, EveryKindIsReadByItsName) {
   }
 }
 
-TEST(FaultSchedule, AnythingElseIsRefusedWithTheGrammar) {
+TEST(FaultSchedule, RefusesMalformedTextWithTheGrammar) {
   for (const char* text : {"",        "@",        "nan",       "nan@",        "nan@x",        "nan@1+",
                            "nan@1+x", "nan@-1",   "nan@1+-1",  "nan@nan",     "nan@inf",      "nan@1+inf",
                            "nan:1@1", "jitter@1", "jitter:@1", "jitter:-1@1", "jitter:1e9@1", "slow_write:60000@1",

@@ -65,7 +65,7 @@ std::vector<DeviceReading> read_seconds(FaultyDevice& device, int count, double 
   return readings;
 }
 
-TEST(FaultyDevice, IsTheDeviceItselfOutsideItsFaults) {
+TEST(FaultyDevice, PassesReadingsThroughOutsideFaults) {
   Broken broken({{DeviceFault::kJump, 3.0, 2.0, 100.0}});
   const auto readings = read_seconds(broken.device, 8);
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -94,7 +94,7 @@ TEST(FaultyDevice, JitterIsBoundedSeededAndNotConstant) {
   EXPECT_GT(most, 0.4);
 }
 
-TEST(FaultyDevice, DroppedReadsRepeatAndSaySo) {
+TEST(FaultyDevice, DroppedReadsAreMarkedRepeated) {
   Broken broken({{DeviceFault::kDropped, 2.0, 3.0, 0.0}});
   const auto readings = read_seconds(broken.device, 7);
   for (std::size_t i = 2; i < 5; ++i) {
@@ -104,7 +104,7 @@ TEST(FaultyDevice, DroppedReadsRepeatAndSaySo) {
   EXPECT_EQ(readings[5].X_DS.p().x(), 5.0);
 }
 
-TEST(FaultyDevice, StuckEncoderStandsStillAndClaimsToBeFresh) {
+TEST(FaultyDevice, StuckEncoderRepeatsPosesMarkedFresh) {
   Broken broken({{DeviceFault::kStuck, 2.0, 3.0, 0.0}});
   const auto readings = read_seconds(broken.device, 7);
   for (std::size_t i = 2; i < 5; ++i) {
@@ -114,7 +114,7 @@ TEST(FaultyDevice, StuckEncoderStandsStillAndClaimsToBeFresh) {
   EXPECT_EQ(readings[5].X_DS.p().x(), 5.0);
 }
 
-TEST(FaultyDevice, NanPosesAreNanAndLeaveNothingBehind) {
+TEST(FaultyDevice, NanPosesEndWithTheFault) {
   Broken broken({{DeviceFault::kNan, 2.0, 1.0, 0.0}, {DeviceFault::kDropped, 3.0, 1.0, 0.0}});
   const auto readings = read_seconds(broken.device, 5);
   EXPECT_TRUE(readings[1].X_DS.is_finite());
@@ -123,7 +123,7 @@ TEST(FaultyDevice, NanPosesAreNanAndLeaveNothingBehind) {
   EXPECT_EQ(readings[4].X_DS.p().x(), 4.0);
 }
 
-TEST(FaultyDevice, UnpluggedRefusesWritesUntilItIsOpenedAgain) {
+TEST(FaultyDevice, UnpluggedRefusesWritesUntilReopened) {
   Broken broken({{DeviceFault::kDisconnect, 2.0, 2.0, 0.0}});
   broken.device.read(0.0);
   EXPECT_TRUE(broken.device.write({{3.0, 0.0, 0.0}, Vec3::Zero()}));
@@ -141,13 +141,13 @@ TEST(FaultyDevice, UnpluggedRefusesWritesUntilItIsOpenedAgain) {
   EXPECT_EQ(broken.mover->reconnects, 0);  // nothing was wrong with the device itself
 }
 
-TEST(FaultyDevice, UnpluggedForEverCannotBeOpened) {
+TEST(FaultyDevice, StaysClosedWhenUnpluggedForEver) {
   Broken broken({{DeviceFault::kDisconnect, 0.0, kForEver, 0.0}});
   EXPECT_EQ(broken.device.read(0.0).status, DeviceStatus::kDisconnected);
   EXPECT_FALSE(broken.device.reconnect());
 }
 
-TEST(FaultyDevice, DeviceThatIsReallyGoneIsOpenedAgain) {
+TEST(FaultyDevice, ReopensADisconnectedDevice) {
   Broken broken({{DeviceFault::kJump, 100.0, 1.0, 1.0}});
   broken.device.read(0.0);
   broken.mover->is_gone = true;
@@ -157,7 +157,7 @@ TEST(FaultyDevice, DeviceThatIsReallyGoneIsOpenedAgain) {
   EXPECT_EQ(broken.device.read(2.0).status, DeviceStatus::kFresh);
 }
 
-TEST(FaultyDevice, SlowReadsAndWritesWaitThatLongAndNoLonger) {
+TEST(FaultyDevice, SlowReadsAndWritesWaitAtMostTheMaximum) {
   double waited_ms = 0.0;
   const auto count = [](void* sum, double wait_ms) noexcept { *static_cast<double*>(sum) += wait_ms; };
   Broken broken({{DeviceFault::kSlowRead, 1.0, 1.0, 3.0}, {DeviceFault::kSlowWrite, 2.0, 1.0, 1e9}},
@@ -174,7 +174,7 @@ TEST(FaultyDevice, SlowReadsAndWritesWaitThatLongAndNoLonger) {
   EXPECT_EQ(waited_ms, 3.0 + kMaxSlow_ms);
 }
 
-TEST(FaultyDevice, NeverAllocatesWhateverIsBroken) {
+TEST(FaultyDevice, NeverAllocatesDuringAnyFault) {
   for (const DeviceFault fault :
        {DeviceFault::kJitter, DeviceFault::kDropped, DeviceFault::kNan, DeviceFault::kStuck, DeviceFault::kJump,
         DeviceFault::kDisconnect, DeviceFault::kSlowWrite, DeviceFault::kSlowRead}) {
@@ -189,7 +189,7 @@ TEST(FaultyDevice, NeverAllocatesWhateverIsBroken) {
   }
 }
 
-TEST(FaultyDevice, WrapsWhatIsOpenedWithASchedule) {
+TEST(FaultyDevice, WrapsADeviceOpenedWithASchedule) {
   DeviceOptions options;
   options.devices_file = data_dir() / "devices.toml";
   options.faults = {*parse_fault("nan@0")};

@@ -19,7 +19,7 @@ std::vector<Pose> swing(int count) {
   return poses;
 }
 
-TEST(ReplayDevice, GivesRecordedPosesToTheBitAtTheirRate) {
+TEST(ReplayDevice, ReturnsRecordedPosesBitwiseAtTheirRate) {
   const std::vector<Pose> poses = swing(200);
   ReplayDevice device({}, "x", poses, 1000.0);
   for (int i = 0; i < 200; ++i) {
@@ -30,7 +30,7 @@ TEST(ReplayDevice, GivesRecordedPosesToTheBitAtTheirRate) {
   }
 }
 
-TEST(ReplayDevice, InterpolatesBetweenThem) {
+TEST(ReplayDevice, InterpolatesBetweenPoses) {
   ReplayDevice device({}, "x", swing(3), 100.0);
   device.read(0.0);
   const DeviceReading reading = device.read(0.0125);
@@ -38,7 +38,7 @@ TEST(ReplayDevice, InterpolatesBetweenThem) {
   EXPECT_NEAR(haptics::rotation_vector(reading.X_DS.R()).x(), 0.125, 1e-9);
 }
 
-TEST(ReplayDevice, HoldsTheLastPoseWhateverIsWritten) {
+TEST(ReplayDevice, HoldsTheLastPoseDespiteWrites) {
   ReplayDevice device({}, "x", swing(3), 100.0);
   device.read(0.0);
   EXPECT_TRUE(device.write({Vec3::Constant(5.0), Vec3::Zero()}));

@@ -23,7 +23,7 @@ class ReplayFile : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ReplayFile, IsReadBackAsItWasWritten) {
+TEST_F(ReplayFile, RoundTripsItsPoses) {
   RecordedMotion motion;
   motion.rate_hz = 500.0;
   for (int i = 0; i < 3001; ++i)

@@ -11,7 +11,7 @@ namespace {
 
 using namespace trocar::testing;
 
-TEST(SimulatedHand, HeldAgainstAForceGivesWayAsTheHandsSpring) {
+TEST(SimulatedHand, YieldsToAForceLikeTheHandSpring) {
   for (const double point_mm : {0.0, 160.0}) {
     const haptics::DevicePreset preset = preset_of("premium");
     Bench bench(preset);
@@ -51,7 +51,7 @@ TEST(SimulatedHand, HeldAtTheTipSwingsAboutIt) {
   EXPECT_GT(X_DS.p().x(), 10.0);
 }
 
-TEST(SimulatedHand, TakingAnotherHoldMovesNothing) {
+TEST(SimulatedHand, ChangingTheGripMovesNothing) {
   Bench bench(preset_of("premium"));
   const Pose X_DS(haptics::rotation_from_vector({0.2, -0.7, 0.1}), {5.0, 6.0, 7.0});
   DeviceHand hand = holding(X_DS, bench.time_s);
@@ -73,7 +73,7 @@ TEST(SimulatedHand, TakingAnotherHoldMovesNothing) {
   EXPECT_EQ(bench.device.X_DS().p(), before.p());
 }
 
-TEST(SimulatedHand, PutsTheStylusInPlaceOnceATarget) {
+TEST(SimulatedHand, PlacesTheStylusOncePerTarget) {
   Bench bench(ideal());
   DeviceHand hand = placed_at(Pose::translation({0.0, 0.0, 40.0}));
   for (int i = 0; i < 50; ++i) bench.period(hand, {});  // the same target, told every period
@@ -84,7 +84,7 @@ TEST(SimulatedHand, PutsTheStylusInPlaceOnceATarget) {
   EXPECT_EQ(bench.device.v_D().norm(), 0.0);
 }
 
-TEST(SimulatedHand, HandGoesOnByItsVelocityForAWhileAndThenStands) {
+TEST(SimulatedHand, ExtrapolatesByVelocityBrieflyThenStops) {
   Bench bench(ideal());
   DeviceHand hand = holding(Pose(), bench.time_s);
   hand.v_D = Vec3(100.0, 0.0, 0.0);
@@ -97,7 +97,7 @@ TEST(SimulatedHand, HandGoesOnByItsVelocityForAWhileAndThenStands) {
   EXPECT_EQ(bench.device.v_D().norm(), 0.0);
 }
 
-TEST(SimulatedHand, RigidHandFollowsExactlyWhateverItPushes) {
+TEST(SimulatedHand, RigidHandFollowsExactlyAgainstForces) {
   Bench bench(ideal());
   const Pose X_DS(haptics::rotation_from_vector({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
   DeviceHand hand = holding(X_DS, bench.time_s);
@@ -107,7 +107,7 @@ TEST(SimulatedHand, RigidHandFollowsExactlyWhateverItPushes) {
   EXPECT_LT((bench.device.X_DS().R() - X_DS.R()).norm(), 1e-12);
 }
 
-TEST(SimulatedHand, GivesTheButtonsOfTheHand) {
+TEST(SimulatedHand, ReportsTheButtonsOfTheHand) {
   Bench bench(preset_of("premium"));
   DeviceHand hand = holding(Pose(), bench.time_s);
   hand.buttons = kButtonMain | kButtonSecond;

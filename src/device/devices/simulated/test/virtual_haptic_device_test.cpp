@@ -72,7 +72,7 @@ TEST(ReleasedStylus, TickOfAServerCarriesTheStylus) {
   }
 }
 
-TEST(VirtualHapticDevice, FallsAsItsWeightAndMassSay) {
+TEST(VirtualHapticDevice, FallsAccordingToItsWeightAndMass) {
   const haptics::DevicePreset preset = ideal();
   Bench bench(preset, without_friction());
   bench.period(placed_at(Pose::translation({0.0, 0.0, 50.0})), {});
@@ -83,13 +83,13 @@ TEST(VirtualHapticDevice, FallsAsItsWeightAndMassSay) {
   EXPECT_NEAR(bench.device.X_DS().p().x(), 0.0, 1e-9);
 }
 
-TEST(VirtualHapticDevice, RestsInItsHolderUntilItIsTaken) {
+TEST(VirtualHapticDevice, RestsInItsHolderUntilGrasped) {
   Bench bench(preset_of("premium"));
   for (int i = 0; i < 100; ++i) bench.period(std::nullopt, {{1.0, 0.0, 0.0}, Vec3::Zero()});
   EXPECT_EQ(bench.device.X_DS().p().norm(), 0.0);
 }
 
-TEST(VirtualHapticDevice, WrenchActsLateByItsDelay) {
+TEST(VirtualHapticDevice, AppliesAWrenchAfterItsDelay) {
   for (const int delay : {0, 1, 3}) {
     SimulatedDeviceParams params = without_friction();
     params.force_delay = delay;
@@ -118,7 +118,7 @@ TEST(VirtualHapticDevice, LastWrenchActsUntilAnotherIsWritten) {
   EXPECT_NEAR(bench.device.v_D().x(), 0.1 / preset.apparent_mass_kg * 1000.0 * 0.1, 1e-6);
 }
 
-TEST(VirtualHapticDevice, ReadingsAreLateByTheirDelay) {
+TEST(VirtualHapticDevice, DelaysReadings) {
   SimulatedDeviceParams params;
   params.reading_delay = 2;
   Bench bench(ideal(), params);
@@ -135,7 +135,7 @@ TEST(VirtualHapticDevice, ReadingsAreLateByTheirDelay) {
   }
 }
 
-TEST(VirtualHapticDevice, TellsPositionsAndAnglesInCounts) {
+TEST(VirtualHapticDevice, QuantisesPositionsAndAnglesToEncoderCounts) {
   const haptics::DevicePreset preset = preset_of("omni");
   Bench bench(preset);
   Random random(5);
@@ -155,7 +155,7 @@ TEST(VirtualHapticDevice, TellsPositionsAndAnglesInCounts) {
   }
 }
 
-TEST(VirtualHapticDevice, WithoutAngleSensorsTellsIdentity) {
+TEST(VirtualHapticDevice, ReportsIdentityRotationWithoutAngleSensors) {
   Bench bench(preset_of("falcon"));
   bench.period(placed_at(Pose(haptics::rotation_from_vector({0.5, 0.5, 0.0}), {1.0, 2.0, 3.0})), {});
   const DeviceReading reading = bench.period(std::nullopt, {});
@@ -175,7 +175,7 @@ TEST(VirtualHapticDevice, WithoutTorqueMotorsIgnoresTorque) {
   }
 }
 
-TEST(VirtualHapticDevice, MotorsGiveNoMoreThanTheirPeaks) {
+TEST(VirtualHapticDevice, LimitsMotorsToTheirPeaks) {
   haptics::DevicePreset preset = ideal();
   preset.capability.stylus_weight_n = 0.0;
   for (const double wanted_n : {10.0, 37.5, 100.0, 15000.0}) {
@@ -203,7 +203,7 @@ TEST(VirtualHapticDevice, DryFrictionHoldsUntilItIsOvercome) {
   EXPECT_NEAR(pushed_mm(preset.friction_n + excess_n), 0.5 * excess_n / preset.apparent_mass_kg * 1000.0 * 0.01, 0.02);
 }
 
-TEST(VirtualHapticDevice, DryFrictionStopsAMotionAsItsWorkSays) {
+TEST(VirtualHapticDevice, DryFrictionStopsAMotionByItsWork) {
   haptics::DevicePreset preset = preset_of("omni");
   preset.capability.stylus_weight_n = 0.0;
   preset.viscosity_ns_per_mm = 0.0;
@@ -248,7 +248,7 @@ TEST(VirtualHapticDevice, WorkspaceEndsInASoftWall) {
   EXPECT_LT(farthest_mm - preset.workspace_radius_mm, 2.0 * beyond_mm);
 }
 
-TEST(VirtualHapticDevice, SlowServerGetsTheSameMotion) {
+TEST(VirtualHapticDevice, MotionIsIndependentOfTheServerRate) {
   const auto path = [](double dt_s) {
     Bench bench(ideal(), without_friction());
     DeviceHand hand = holding(Pose::translation({10.0, 0.0, 0.0}), bench.time_s);
@@ -263,7 +263,7 @@ TEST(VirtualHapticDevice, SlowServerGetsTheSameMotion) {
   EXPECT_NEAR(path(0.00025), fine, 0.05);  // trapezoidal rule, steps of another length
 }
 
-TEST(VirtualHapticDevice, GapsAndAnyClockNeverExplode) {
+TEST(VirtualHapticDevice, StaysFiniteForGapsAndAnyClock) {
   Bench bench(preset_of("inverse3"));
   Random random(9);
   for (int i = 0; i < 2000; ++i) {
@@ -280,7 +280,7 @@ TEST(VirtualHapticDevice, GapsAndAnyClockNeverExplode) {
   EXPECT_TRUE(reading.X_DS.is_finite());
 }
 
-TEST(VirtualHapticDevice, SameTimeAgainIsARepeatedReading) {
+TEST(VirtualHapticDevice, MarksAReadAtTheSameTimeAsRepeated) {
   Bench bench(preset_of("premium"));
   EXPECT_EQ(bench.device.read(bench.time_s + kDt_s).status, DeviceStatus::kFresh);
   EXPECT_EQ(bench.device.read(bench.time_s + kDt_s).status, DeviceStatus::kRepeated);

@@ -39,7 +39,7 @@ TEST(DynamicLibrary, OnlyARegularFileIsOpened) {
   EXPECT_NE(load_error(folder / "none.so").find("no such file"), std::string::npos);
 }
 
-TEST(DynamicLibrary, WhatIsNoLibraryIsToldByTheLoader) {
+TEST(DynamicLibrary, ReportsTheLoaderErrorForANonLibrary) {
   const TemporaryFolder folder;
   std::ofstream(folder / "text.so") << std::string(100'000, 'x');
   std::ofstream(folder / "empty.so");
@@ -51,17 +51,17 @@ TEST(DynamicLibrary, WhatIsNoLibraryIsToldByTheLoader) {
   EXPECT_NE(load_error("libtrocar_that_nobody_has.so").find("the test cannot be loaded"), std::string::npos);
 }
 
-TEST(DynamicLibrary, ALoadThatHangsIsGivenUp) {
+TEST(DynamicLibrary, GivesUpOnALoadThatHangs) {
   const std::string error = load_error(testing::standin_dir() / "libhang.so", std::chrono::milliseconds(200));
   EXPECT_NE(error.find("loading the library takes longer than 0.2 s"), std::string::npos) << error;
 }
 
-TEST(DynamicLibrary, ALoadThatEndsTheProgramIsAnError) {
+TEST(DynamicLibrary, ReportsALoadThatKillsTheProgram) {
   const std::string error = load_error(testing::standin_dir() / "libcrash.so");
   EXPECT_NE(error.find("ends the program (signal 6)"), std::string::npos) << error;
 }
 
-TEST(DynamicLibrary, IsLoadedOnceMoreWithoutATrial) {
+TEST(DynamicLibrary, SecondLoadNeedsNoTrial) {
   const fs::path library = testing::standin_dir() / "libdhd.so";
   EXPECT_EQ(load_error(library), "");
   EXPECT_EQ(load_error(library, std::chrono::milliseconds(0)), "") << "it is loaded already";

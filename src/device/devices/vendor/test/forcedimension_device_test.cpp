@@ -67,7 +67,7 @@ class ForceDimension : public ::testing::Test {
   double now_s = 50.0;
 };
 
-TEST_F(ForceDimension, MetresAndAxesBecomeOurs) {
+TEST_F(ForceDimension, ConvertsMetresAndAxes) {
   open_or_fail();
   vendor->set_pose(Mat3::Identity(), {10, 20, 30});  // mm: towards the user, right, up
   const DeviceReading reading = read_after(1);
@@ -75,14 +75,14 @@ TEST_F(ForceDimension, MetresAndAxesBecomeOurs) {
   EXPECT_LT((reading.X_DS.p() - Vec3(20, -10, 30)).norm(), kTiny);
 }
 
-TEST_F(ForceDimension, ForceComesBackRotated) {
+TEST_F(ForceDimension, RotatesForceIntoDeviceAxes) {
   open_or_fail();
   EXPECT_LT((force_after({1, 0, 0}) - Vec3(0, 1, 0)).norm(), kTiny);
   EXPECT_LT((force_after({0, 1, 0}) - Vec3(-1, 0, 0)).norm(), kTiny);
   EXPECT_LT((force_after({0, 0, 1}) - Vec3(0, 0, 1)).norm(), kTiny);
 }
 
-TEST_F(ForceDimension, ForceMovesItTheWayItIsRead) {
+TEST_F(ForceDimension, ForceAndPositionShareOneFrame) {
   open_or_fail();
   const Vec3 force_D(0.3, -0.4, 0.5);
   const Vec3 before = read_after(1).X_DS.p();
@@ -104,14 +104,14 @@ TEST_F(ForceDimension, StylusPointsFromGripToTip) {
   EXPECT_NEAR(R_DS.determinant(), 1.0, kTiny);
 }
 
-TEST_F(ForceDimension, DeviceWithoutRotationGivesIdentity) {
+TEST_F(ForceDimension, ReportsIdentityWithoutRotationSensors) {
   vendor->set_type(dhd::kFalcon, "Falcon", false);
   open_or_fail();
   vendor->set_pose(Mat3::Identity(), {1, 2, 3});
   EXPECT_TRUE(read_after(1).X_DS.R().isIdentity());
 }
 
-TEST_F(ForceDimension, ButtonsAreBits) {
+TEST_F(ForceDimension, ReportsButtonsAsBits) {
   open_or_fail();
   EXPECT_EQ(read_after(1).buttons, 0u);
   vendor->set_button(0, true);
@@ -137,7 +137,7 @@ TEST_F(ForceDimension, ModelChoosesThePreset) {
   EXPECT_NE(unknown.error().text().find("omega.3"), std::string::npos);
 }
 
-TEST_F(ForceDimension, TorqueGoesToActiveWristsAlone) {
+TEST_F(ForceDimension, SendsTorqueOnlyToActiveWrists) {
   open_or_fail();  // an omega.6: the stand-in notes a torque for it
   EXPECT_TRUE(device->write({Vec3(0, 0, 1), Vec3(10, 20, 30)}));
   pace->step(1);
@@ -150,7 +150,7 @@ TEST_F(ForceDimension, TorqueGoesToActiveWristsAlone) {
   EXPECT_LT((vendor->arm().torque_nmm - Vec3(-20, 10, 30)).norm(), kTiny);
 }
 
-TEST_F(ForceDimension, VendorsSafetyStaysOn) {
+TEST_F(ForceDimension, KeepsTheVendorSafetyOn) {
   vendor->set_watchdog(0);
   open_or_fail();
   EXPECT_EQ(vendor->watchdog(), 160) << "20 ms in counts of 125 us";
@@ -161,7 +161,7 @@ TEST_F(ForceDimension, VendorsSafetyStaysOn) {
   EXPECT_EQ(vendor->watchdog(), 40) << "as it was set";
 }
 
-TEST_F(ForceDimension, MotorsThatTheDeviceSwitchedOffAreARefusedWrite) {
+TEST_F(ForceDimension, RefusesWritesWhenTheDeviceCutsItsMotors) {
   open_or_fail();
   for (const int cause : {dhd::kForceOffButton, dhd::kForceOffVelocity, dhd::kForceOffWatchdog}) {
     vendor->force_off(cause);
@@ -191,7 +191,7 @@ TEST_F(ForceDimension, ForceAboveThePeakIsCut) {
   EXPECT_EQ(vendor->arm().force_n.norm(), 0.0);
 }
 
-TEST_F(ForceDimension, OldWrenchBecomesZero) {
+TEST_F(ForceDimension, ZeroesAStaleWrench) {
   open_or_fail();
   EXPECT_GT(force_after({0, 0, 1}).norm(), 0.9);
   pace->advance(0.9 * ServoExchange::kOldestWrench_s);
@@ -203,7 +203,7 @@ TEST_F(ForceDimension, OldWrenchBecomesZero) {
   EXPECT_GT(force_after({0, 0, 1}).norm(), 0.9);
 }
 
-TEST_F(ForceDimension, WrenchThatIsNotANumberIsRefusedAndZero) {
+TEST_F(ForceDimension, RefusesANanWrenchAndZeroesTheForce) {
   open_or_fail();
   force_after({0, 0, 1});
   EXPECT_FALSE(device->write({Vec3::Zero(), Vec3(std::nan(""), 0, 0)})) << "even of a torque that it drops";
@@ -211,7 +211,7 @@ TEST_F(ForceDimension, WrenchThatIsNotANumberIsRefusedAndZero) {
   EXPECT_EQ(vendor->arm().force_n.norm(), 0.0);
 }
 
-TEST_F(ForceDimension, PoseThatIsNotANumberIsPassedOnWithoutForce) {
+TEST_F(ForceDimension, PassesANanPoseAndZeroesTheForce) {
   open_or_fail();
   force_after({0, 0, 1});
   vendor->send_nan(true);
@@ -220,7 +220,7 @@ TEST_F(ForceDimension, PoseThatIsNotANumberIsPassedOnWithoutForce) {
   EXPECT_EQ(vendor->arm().force_n.norm(), 0.0);
 }
 
-TEST_F(ForceDimension, UnpluggedIsDisconnectedUntilReconnected) {
+TEST_F(ForceDimension, StaysDisconnectedUntilReconnected) {
   open_or_fail();
   force_after({0, 0, 1});
   vendor->set_present(false);
@@ -240,7 +240,7 @@ TEST_F(ForceDimension, UnpluggedIsDisconnectedUntilReconnected) {
   EXPECT_GT(force_after({0, 0, 1}).norm(), 0.9);
 }
 
-TEST_F(ForceDimension, ShortFailureIsNoDisconnection) {
+TEST_F(ForceDimension, ToleratesAShortReadFailure) {
   open_or_fail();
   read_after(1);
   vendor->set_present(false);
@@ -249,7 +249,7 @@ TEST_F(ForceDimension, ShortFailureIsNoDisconnection) {
   EXPECT_EQ(read_after(1).status, DeviceStatus::kFresh);
 }
 
-TEST_F(ForceDimension, ClosingUnderForceLeavesZero) {
+TEST_F(ForceDimension, ZeroesTheForceWhenClosed) {
   open_or_fail();
   EXPECT_GT(force_after({0, 0, 2}).norm(), 1.9);
   device.reset();
@@ -257,7 +257,7 @@ TEST_F(ForceDimension, ClosingUnderForceLeavesZero) {
   EXPECT_FALSE(vendor->has_force());
 }
 
-TEST_F(ForceDimension, MissingLibraryIsOneClearError) {
+TEST_F(ForceDimension, ReportsAMissingLibrary) {
   setenv("TROCAR_LIBDHD", "/nowhere/libdhd.so", 1);
   const Status status = open();
   ASSERT_FALSE(status);
@@ -267,7 +267,7 @@ TEST_F(ForceDimension, MissingLibraryIsOneClearError) {
   }
 }
 
-TEST_F(ForceDimension, MissingDeviceIsOneClearError) {
+TEST_F(ForceDimension, ReportsAMissingDevice) {
   vendor->set_present(false);
   const Status status = open();
   ASSERT_FALSE(status);
@@ -275,14 +275,14 @@ TEST_F(ForceDimension, MissingDeviceIsOneClearError) {
   EXPECT_NE(status.error().text().find("connect"), std::string::npos);
 }
 
-TEST_F(ForceDimension, UncalibratedDeviceIsTold) {
+TEST_F(ForceDimension, ReportsAnUncalibratedDevice) {
   vendor->set_calibrated(false);
   const Status status = open();
   ASSERT_FALSE(status);
   EXPECT_NE(status.error().text().find("calibration pit"), std::string::npos) << status.error().text();
 }
 
-TEST_F(ForceDimension, OpensByItsKindAtItsOwnPace) {
+TEST_F(ForceDimension, OpensByKindAndRunsAtItsOwnRate) {
   DeviceOptions options;
   options.devices_file = testing::source_dir() / "data/devices.toml";
   options.preset = "no such row";
@@ -301,7 +301,7 @@ TEST_F(ForceDimension, ReadAndWriteDoNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST_F(ForceDimension, RunsFreelyBesideTheRealTimeThread) {
+TEST_F(ForceDimension, RunsIndependentlyOfTheRealTimeThread) {
   open_or_fail();
   pace->run_freely();
   int fresh = 0;
@@ -317,7 +317,7 @@ TEST_F(ForceDimension, RunsFreelyBesideTheRealTimeThread) {
 }
 
 /// The witness itself: it notes what the tests above are clean of.
-TEST_F(ForceDimension, StandInNotesBrokenRules) {
+TEST_F(ForceDimension, StandInRecordsRuleViolations) {
   const auto api = dhd::load_api();
   ASSERT_TRUE(api);
   const auto broken = [&] {
@@ -339,7 +339,7 @@ TEST_F(ForceDimension, StandInNotesBrokenRules) {
   EXPECT_NE(broken().find("motors on"), std::string::npos);
 }
 
-TEST_F(ForceDimension, WithoutAThreadIsClosedAndAReconnectIsRefused) {
+TEST_F(ForceDimension, FailsToOpenAndReconnectWithoutAThread) {
   {
     const trocar::testing::NoThreads none;
     const Status refused = open();

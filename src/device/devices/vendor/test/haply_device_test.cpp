@@ -57,7 +57,7 @@ bool comes_to(HapticDevice& device, DeviceStatus status) {
   return wait_until([&] { return device.read(0.0).status == status; });
 }
 
-TEST(HaplyMessage, BaseAndMillimetresBecomeDevicesFrame) {
+TEST(HaplyMessage, ConvertsToTheDeviceFrameInMm) {
   HaplyState state;
   state.p_m = kHaplyCentre_m + Vec3(0.01, 0.02, -0.03);
   const Pose X_DS = haply_pose(state, false);
@@ -67,7 +67,7 @@ TEST(HaplyMessage, BaseAndMillimetresBecomeDevicesFrame) {
   EXPECT_NEAR((haply_pose(state, true).p() - Vec3(10.0, 20.0, -30.0)).norm(), 0.0, 1e-9);
 }
 
-TEST(HaplyMessage, GripsPointingAxisBecomesTheNeedles) {
+TEST(HaplyMessage, MapsTheGripAxisToTheNeedleAxis) {
   HaplyState state;
   // The grip at rest points forward, away from the user: +y of D.
   state.q_grip = Eigen::Quaterniond::Identity();
@@ -81,7 +81,7 @@ TEST(HaplyMessage, GripsPointingAxisBecomesTheNeedles) {
   EXPECT_NEAR((R_DS.col(2) - Vec3::UnitZ()).norm(), 0.0, 1e-12);
 }
 
-TEST(HaplyMessage, HostileBytesAreMalformedAndNeverMore) {
+TEST(HaplyMessage, TreatsHostileBytesAsMalformed) {
   const char* const kHostile[] = {
       "",
       "nul",
@@ -104,7 +104,7 @@ TEST(HaplyMessage, HostileBytesAreMalformedAndNeverMore) {
   EXPECT_EQ(parse_haply_state(std::string(kMostHaplyBytes + 1, ' '), {}).condition, HaplyCondition::kMalformed);
 }
 
-TEST(HaplyMessage, GripThatIsNoRotationIsMalformed) {
+TEST(HaplyMessage, TreatsANonRotationGripAsMalformed) {
   const std::string state = R"({"inverse3":[{"device_id":"1","state":{"cursor_position":{"x":0,"y":0,"z":0}}}],)";
   const auto with_grip = [&](const char* q) {
     return parse_haply_state(state + R"("wireless_verse_grip":[{"state":{"orientation":)" + q + "}}]}", {}).condition;
@@ -114,7 +114,7 @@ TEST(HaplyMessage, GripThatIsNoRotationIsMalformed) {
   EXPECT_EQ(with_grip(R"({"w":1e200,"x":1e200,"y":0,"z":0})"), HaplyCondition::kMalformed);
 }
 
-TEST(HaplyMessage, OnlyTheWantedDeviceCounts) {
+TEST(HaplyMessage, SelectsTheRequestedDevice) {
   const std::string text = R"({"inverse3":[{"device_id":"A","state":{"cursor_position":{"x":0.1,"y":0,"z":0}}},)"
                            R"({"device_id":"B","state":{"cursor_position":{"x":0.2,"y":0,"z":0}}}]})";
   EXPECT_EQ(parse_haply_state(text, {}).device_id, "A");
@@ -122,12 +122,12 @@ TEST(HaplyMessage, OnlyTheWantedDeviceCounts) {
   EXPECT_EQ(parse_haply_state(text, "C").condition, HaplyCondition::kNoDevice);
 }
 
-TEST(HaplyMessage, DeviceIdCannotBreakOutOfTheCommand) {
+TEST(HaplyMessage, EscapesTheDeviceIdInCommands) {
   const std::string command = haply_force_command("a\",\"b\":\"", Vec3::Zero());
   EXPECT_NE(command.find(R"("a\",\"b\":\"")"), std::string::npos) << command;
 }
 
-TEST(WebSocketAddress, IsReadOrRefused) {
+TEST(WebSocketAddress, ParsesOrRefusesAddresses) {
   const auto address = parse_websocket_address("ws://localhost:10001");
   ASSERT_TRUE(address.has_value());
   EXPECT_EQ(address->host, "localhost");
@@ -141,7 +141,7 @@ TEST(WebSocketAddress, IsReadOrRefused) {
   }
 }
 
-TEST(HaplyDevice, GivesThePoseAndButtonsOfTheService) {
+TEST(HaplyDevice, ReportsThePoseAndButtonsOfTheService) {
   HaplyService service;
   const auto device = open_at(service);
   ASSERT_NE(device, nullptr);
@@ -158,7 +158,7 @@ TEST(HaplyDevice, GivesThePoseAndButtonsOfTheService) {
   EXPECT_FALSE(device->preset().has_torque());
 }
 
-TEST(HaplyDevice, TakesTheMiddleFromAServiceThatKnowsIt) {
+TEST(HaplyDevice, UsesTheCentreReportedByTheService) {
   HaplyService service;
   service.set_centred(true);
   service.put_cursor(Vec3(0.01, 0.0, 0.0));
@@ -175,7 +175,7 @@ TEST(HaplyDevice, WithoutAGripSensesThreeDegreesOfFreedom) {
   EXPECT_EQ(device->read(0.0).X_DS.R(), Mat3::Identity().eval());
 }
 
-TEST(HaplyDevice, IsTheOneWhoseIdIsNamed) {
+TEST(HaplyDevice, SelectsTheDeviceById) {
   const HaplyService service;
   EXPECT_TRUE(HaplyDevice::open(inverse3(), service.address() + "#049D").has_value());
   const auto other = HaplyDevice::open(inverse3(), service.address() + "#1234");
@@ -183,7 +183,7 @@ TEST(HaplyDevice, IsTheOneWhoseIdIsNamed) {
   EXPECT_NE(other.error().text().find("no Inverse3"), std::string::npos);
 }
 
-TEST(HaplyDevice, ReconnectsWithItsGripAlone) {
+TEST(HaplyDevice, ReconnectsOnlyWithItsGrip) {
   HaplyService service;
   const auto device = open_at(service);
   ASSERT_NE(device, nullptr);
@@ -195,7 +195,7 @@ TEST(HaplyDevice, ReconnectsWithItsGripAlone) {
   EXPECT_EQ(device->read(0.0).status, DeviceStatus::kDisconnected);
 }
 
-TEST(HaplyDevice, AGripThatTurnsUpLaterIsNoPartOfIt) {
+TEST(HaplyDevice, IgnoresAGripThatAppearsLater) {
   HaplyService service(HaplyMood::kNoGrip);
   const auto device = open_at(service);
   ASSERT_NE(device, nullptr);
@@ -237,7 +237,7 @@ TEST(HaplyDevice, AnswersEachOfAThousandStatesOnce) {
   EXPECT_EQ(service.violations(), std::vector<std::string>{});
 }
 
-TEST(HaplyDevice, ForceEndsWhenNobodyWritesAnyMore) {
+TEST(HaplyDevice, ZeroesTheForceWhenWritesStop) {
   HaplyService service;
   const auto device = open_at(service);
   ASSERT_NE(device, nullptr);
@@ -249,7 +249,7 @@ TEST(HaplyDevice, ForceEndsWhenNobodyWritesAnyMore) {
   EXPECT_NE(device->read(0.0).status, DeviceStatus::kDisconnected);
 }
 
-TEST(HaplyDevice, ForceThatIsNotFiniteIsRefusedAndEndsTheForce) {
+TEST(HaplyDevice, RefusesNonFiniteForcesAndZeroesTheForce) {
   HaplyService service;
   const auto device = open_at(service);
   ASSERT_NE(device, nullptr);
@@ -279,7 +279,7 @@ TEST(HaplyDevice, ClosesAtZeroForce) {
   EXPECT_EQ(service.violations(), std::vector<std::string>{});
 }
 
-TEST(HaplyDevice, SaysAtOpenWhatIsMissing) {
+TEST(HaplyDevice, ReportsWhatIsMissingWhenOpened) {
   EXPECT_NE(error_of(HaplyMood::kNoDevice).find("no Inverse3 is connected"), std::string::npos);
   EXPECT_NE(error_of(HaplyMood::kNoPower).find("power supply"), std::string::npos);
   EXPECT_NE(error_of(HaplyMood::kNotCalibrated).find("not calibrated"), std::string::npos);
@@ -290,7 +290,7 @@ TEST(HaplyDevice, SaysAtOpenWhatIsMissing) {
   EXPECT_NE(error_of(HaplyMood::kClose).find("sends no data"), std::string::npos);
 }
 
-TEST(HaplyDevice, WithoutAServiceSaysHowToGetIt) {
+TEST(HaplyDevice, ErrorExplainsHowToStartTheService) {
   std::string address;
   {
     const HaplyService service;
@@ -303,7 +303,7 @@ TEST(HaplyDevice, WithoutAServiceSaysHowToGetIt) {
 
 class HaplyTrouble : public ::testing::TestWithParam<HaplyMood> {};
 
-TEST_P(HaplyTrouble, EndsInDisconnectionWithoutForceAndReconnects) {
+TEST_P(HaplyTrouble, DisconnectsWithoutForceThenReconnects) {
   HaplyService service;
   const auto device = open_at(service);
   ASSERT_NE(device, nullptr);
@@ -347,7 +347,7 @@ TEST(HaplyDevice, AShortDisturbanceRepeatsThePoseWithoutForce) {
   EXPECT_TRUE(comes_to(*device, DeviceStatus::kFresh));
 }
 
-TEST(HaplyDevice, ReconnectWithoutAServiceFailsAndCanBeTriedAgain) {
+TEST(HaplyDevice, ReconnectWithoutAServiceFailsAndCanBeRetried) {
   auto service = std::make_unique<HaplyService>();
   const auto device = open_at(*service);
   ASSERT_NE(device, nullptr);
@@ -382,7 +382,7 @@ TEST(HaplyDevice, IsOpenedByItsName) {
   EXPECT_EQ((*device)->preset().name, "inverse3");
 }
 
-TEST(HaplyDevice, ASavedWeightReplacesThePresets) {
+TEST(HaplyDevice, AppliesASavedWeight) {
   const HaplyService service;
   const TemporaryFolder folder;
   DeviceOptions options;
@@ -394,7 +394,7 @@ TEST(HaplyDevice, ASavedWeightReplacesThePresets) {
   EXPECT_EQ((*device)->preset().capability.stylus_weight_n, 0.7);
 }
 
-TEST(HaplyDevice, WithoutAThreadIsNotOpenedAndAReconnectIsRefused) {
+TEST(HaplyDevice, FailsToOpenAndReconnectWithoutAThread) {
   const HaplyService service(HaplyMood::kGood);
   {
     const trocar::testing::NoThreads none;

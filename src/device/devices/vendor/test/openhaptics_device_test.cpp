@@ -73,7 +73,7 @@ class OpenHaptics : public ::testing::Test {
   double now_s = 50.0;
 };
 
-TEST_F(OpenHaptics, PushUpwardsReadsAlongZ) {
+TEST_F(OpenHaptics, MapsUpwardMotionToZ) {
   open_or_fail();
   vendor->set_pose(Mat3::Identity(), {10, 20, 30});  // right, up, towards the user
   const DeviceReading reading = read_after(1);
@@ -81,14 +81,14 @@ TEST_F(OpenHaptics, PushUpwardsReadsAlongZ) {
   EXPECT_LT((reading.X_DS.p() - Vec3(10, -30, 20)).norm(), kTiny);
 }
 
-TEST_F(OpenHaptics, ForceComesBackRotated) {
+TEST_F(OpenHaptics, RotatesForceIntoDeviceAxes) {
   open_or_fail();
   EXPECT_LT((force_after({1, 0, 0}) - Vec3(1, 0, 0)).norm(), kTiny);
   EXPECT_LT((force_after({0, 1, 0}) - Vec3(0, 0, -1)).norm(), kTiny);
   EXPECT_LT((force_after({0, 0, 1}) - Vec3(0, 1, 0)).norm(), kTiny);
 }
 
-TEST_F(OpenHaptics, ForceMovesItTheWayItIsRead) {
+TEST_F(OpenHaptics, ForceAndPositionShareOneFrame) {
   open_or_fail();
   const Vec3 force_D(0.3, -0.4, 0.5);
   const Vec3 before = read_after(1).X_DS.p();
@@ -111,14 +111,14 @@ TEST_F(OpenHaptics, StylusPointsFromGripToTip) {
   EXPECT_NEAR(R_DS.determinant(), 1.0, kTiny);
 }
 
-TEST_F(OpenHaptics, OriginIsTheMiddleOfTheUsableWorkspace) {
+TEST_F(OpenHaptics, PlacesTheOriginAtTheWorkspaceCentre) {
   vendor->set_workspace({-100, 0, -50}, {100, 200, 70});
   open_or_fail();
   vendor->set_pose(Mat3::Identity(), {0, 100, 10});
   EXPECT_LT(read_after(1).X_DS.p().norm(), kTiny);
 }
 
-TEST_F(OpenHaptics, FirstReadingIsTheDevicesOwn) {
+TEST_F(OpenHaptics, FirstReadingComesFromTheDevice) {
   vendor->set_pose(Mat3::Identity(), {1, 2, 3});
   open_or_fail();
   const DeviceReading reading = device->read(now_s);
@@ -126,14 +126,14 @@ TEST_F(OpenHaptics, FirstReadingIsTheDevicesOwn) {
   EXPECT_LT((reading.X_DS.p() - Vec3(1, -3, 2)).norm(), kTiny);
 }
 
-TEST_F(OpenHaptics, WithoutANewPeriodTheReadingIsRepeated) {
+TEST_F(OpenHaptics, MarksAReadWithinOnePeriodAsRepeated) {
   open_or_fail();
   vendor->step(1);
   EXPECT_EQ(device->read(now_s).status, DeviceStatus::kFresh);
   EXPECT_EQ(device->read(now_s).status, DeviceStatus::kRepeated);
 }
 
-TEST_F(OpenHaptics, ButtonsAreBits) {
+TEST_F(OpenHaptics, ReportsButtonsAsBits) {
   open_or_fail();
   for (const int bits : {0, hd::kButton1, hd::kButton2, hd::kButton1 | hd::kButton2}) {
     vendor->set_buttons(bits);
@@ -161,7 +161,7 @@ TEST_F(OpenHaptics, ModelChoosesThePreset) {
   EXPECT_NE(unknown.error().text().find("Falcon"), std::string::npos);
 }
 
-TEST_F(OpenHaptics, ASavedWeightReplacesThePresets) {
+TEST_F(OpenHaptics, AppliesASavedWeight) {
   const TemporaryFolder folder;
   stylus_folder = folder.path();
   vendor->set_model("PHANTOM Omni", 3);
@@ -175,7 +175,7 @@ TEST_F(OpenHaptics, ASavedWeightReplacesThePresets) {
   EXPECT_NE(other.error().text().find("premium"), std::string::npos);
 }
 
-TEST_F(OpenHaptics, WhatTheDeviceBearsTightensThePreset) {
+TEST_F(OpenHaptics, DeviceLimitsTightenThePreset) {
   vendor->set_model("PHANTOM Premium 1.5 6DOF", 6);
   vendor->set_nominal(8.5, 1.4, 0.25, 188.0);
   open_or_fail();
@@ -194,7 +194,7 @@ TEST_F(OpenHaptics, WhatTheDeviceBearsTightensThePreset) {
   EXPECT_DOUBLE_EQ(device->preset().capability.max_stiffness_n_per_mm, 3.5);
 }
 
-TEST_F(OpenHaptics, TorqueGoesToSixDegreesOfFreedomAlone) {
+TEST_F(OpenHaptics, SendsTorqueOnlyToSixDegreeOfFreedomDevices) {
   open_or_fail();  // an Omni: the stand-in notes a torque for it
   EXPECT_FALSE(device->preset().has_torque());
   EXPECT_TRUE(device->write({Vec3(0, 0, 1), Vec3(10, 20, 30)}));
@@ -209,7 +209,7 @@ TEST_F(OpenHaptics, TorqueGoesToSixDegreesOfFreedomAlone) {
   EXPECT_LT((vendor->arm().torque_nmm - Vec3(10, 30, -20)).norm(), kTiny);
 }
 
-TEST_F(OpenHaptics, ForceAboveThePeakIsCut) {
+TEST_F(OpenHaptics, ClampsForceToThePeak) {
   open_or_fail();
   const double peak_n = device->preset().capability.peak_force_n;
   EXPECT_NEAR(force_after({0, 0, 5 * peak_n}).norm(), peak_n, kTiny);
@@ -218,7 +218,7 @@ TEST_F(OpenHaptics, ForceAboveThePeakIsCut) {
   EXPECT_EQ(vendor->arm().force_n.norm(), 0.0);
 }
 
-TEST_F(OpenHaptics, OldWrenchBecomesZero) {
+TEST_F(OpenHaptics, ZeroesAStaleWrench) {
   open_or_fail();
   EXPECT_GT(force_after({0, 0, 1}).norm(), 0.9);
   callback_now_s.store(callback_now_s.load() + 0.9 * ServoExchange::kOldestWrench_s);
@@ -230,7 +230,7 @@ TEST_F(OpenHaptics, OldWrenchBecomesZero) {
   EXPECT_GT(force_after({0, 0, 1}).norm(), 0.9);
 }
 
-TEST_F(OpenHaptics, WrenchThatIsNotANumberIsRefusedAndZero) {
+TEST_F(OpenHaptics, RefusesANanWrenchAndZeroesTheForce) {
   open_or_fail();
   force_after({0, 0, 1});
   EXPECT_FALSE(device->write({Vec3(0, std::nan(""), 1), Vec3::Zero()}));
@@ -238,7 +238,7 @@ TEST_F(OpenHaptics, WrenchThatIsNotANumberIsRefusedAndZero) {
   EXPECT_EQ(vendor->arm().force_n.norm(), 0.0);
 }
 
-TEST_F(OpenHaptics, PoseThatIsNotANumberIsPassedOnWithoutForce) {
+TEST_F(OpenHaptics, PassesANanPoseAndZeroesTheForce) {
   open_or_fail();
   force_after({0, 0, 1});
   vendor->send_nan(true);
@@ -250,7 +250,7 @@ TEST_F(OpenHaptics, PoseThatIsNotANumberIsPassedOnWithoutForce) {
   EXPECT_TRUE(device->read(now_s).X_DS.is_finite());
 }
 
-TEST_F(OpenHaptics, ForceErrorIsARefusedWrite) {
+TEST_F(OpenHaptics, RefusesWritesAfterAForceError) {
   open_or_fail();
   for (const hd::Enum code : {hd::kWarmMotors, hd::kExceededMaxForce, hd::kForceError}) {
     vendor->push_error(code);
@@ -261,7 +261,7 @@ TEST_F(OpenHaptics, ForceErrorIsARefusedWrite) {
   }
 }
 
-TEST_F(OpenHaptics, UnpluggedIsDisconnectedUntilReconnected) {
+TEST_F(OpenHaptics, StaysDisconnectedUntilReconnected) {
   open_or_fail();
   force_after({0, 0, 1});
   vendor->set_present(false);
@@ -298,14 +298,14 @@ TEST_F(OpenHaptics, SchedulerThatHangsIsDisconnected) {
   EXPECT_EQ(device->read(now_s).status, DeviceStatus::kDisconnected) << "until it is opened again";
 }
 
-TEST_F(OpenHaptics, ProcessThatWasStoppedLosesNothing) {
+TEST_F(OpenHaptics, SurvivesASuspendedProcess) {
   open_or_fail();
   EXPECT_EQ(read_after(1).status, DeviceStatus::kFresh);
   EXPECT_EQ(device->read(now_s += 10.0).status, DeviceStatus::kRepeated);
   EXPECT_EQ(read_after(1).status, DeviceStatus::kFresh);
 }
 
-TEST_F(OpenHaptics, ClosingUnderForceLeavesZero) {
+TEST_F(OpenHaptics, ZeroesTheForceWhenClosed) {
   open_or_fail();
   EXPECT_GT(force_after({0, 0, 2}).norm(), 1.9);
   device.reset();
@@ -313,7 +313,7 @@ TEST_F(OpenHaptics, ClosingUnderForceLeavesZero) {
   EXPECT_FALSE(vendor->has_force_output());
 }
 
-TEST_F(OpenHaptics, MissingLibraryIsOneClearError) {
+TEST_F(OpenHaptics, ReportsAMissingLibrary) {
   setenv("TROCAR_LIBHD", "/nowhere/libHD.so", 1);
   const Status status = open();
   ASSERT_FALSE(status);
@@ -323,14 +323,14 @@ TEST_F(OpenHaptics, MissingLibraryIsOneClearError) {
   }
 }
 
-TEST_F(OpenHaptics, LibraryOfSomethingElseIsOneClearError) {
+TEST_F(OpenHaptics, ReportsAForeignLibrary) {
   setenv("TROCAR_LIBHD", (testing::standin_dir() / "libdhd.so").c_str(), 1);
   const Status status = open();
   ASSERT_FALSE(status);
   EXPECT_NE(status.error().text().find("hdInitDevice"), std::string::npos) << status.error().text();
 }
 
-TEST_F(OpenHaptics, MissingDeviceIsOneClearError) {
+TEST_F(OpenHaptics, ReportsAMissingDevice) {
   vendor->set_present(false);
   const Status status = open();
   ASSERT_FALSE(status);
@@ -338,7 +338,7 @@ TEST_F(OpenHaptics, MissingDeviceIsOneClearError) {
   EXPECT_NE(status.error().text().find("connect"), std::string::npos);
 }
 
-TEST_F(OpenHaptics, UncalibratedDeviceIsToldAndNotMoved) {
+TEST_F(OpenHaptics, ReportsAnUncalibratedDeviceWithoutMovingIt) {
   vendor->set_calibration(hd::kCalibrationNeedsManualInput, hd::kStyleInkwell);
   Status status = open();
   ASSERT_FALSE(status);
@@ -351,7 +351,7 @@ TEST_F(OpenHaptics, UncalibratedDeviceIsToldAndNotMoved) {
   open_or_fail();
 }
 
-TEST_F(OpenHaptics, CalibratesWhereSomebodyHoldsTheArmForIt) {
+TEST_F(OpenHaptics, CalibratesWhileTheArmIsHeld) {
   vendor->set_calibration(hd::kCalibrationNeedsManualInput, hd::kStyleEncoderReset);
   ASSERT_FALSE(open());
   vendor->hold_in_reset_position(true);
@@ -392,7 +392,7 @@ TEST_F(OpenHaptics, ReadAndWriteDoNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST_F(OpenHaptics, RunsFreelyBesideTheRealTimeThread) {
+TEST_F(OpenHaptics, RunsIndependentlyOfTheRealTimeThread) {
   open_or_fail();
   vendor->run_freely(true);
   int fresh = 0;
@@ -408,7 +408,7 @@ TEST_F(OpenHaptics, RunsFreelyBesideTheRealTimeThread) {
 }
 
 /// The witness itself: it notes what the tests above are clean of.
-TEST_F(OpenHaptics, StandInNotesBrokenRules) {
+TEST_F(OpenHaptics, StandInRecordsRuleViolations) {
   const auto api = hd::load_api();
   ASSERT_TRUE(api);
   const auto broken = [&] {

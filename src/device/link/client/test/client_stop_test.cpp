@@ -13,7 +13,7 @@ namespace {
 using namespace testing;  // the link's
 
 /// A server that does not read: the client's socket is full, and the stop waits. Commands behind it do not overtake it.
-TEST(HapticClient, SendsAStopAsSoonAsItsSocketAcceptsIt) {
+TEST(HapticClient, SendsAStopAheadOfQueuedCommands) {
   RunningServer server(any_endpoint());
   ClientOptions options;
   options.endpoint = server.url();

@@ -10,7 +10,7 @@
 namespace trocar::link::detail {
 namespace {
 
-TEST(ClockOffset, IsExactWhereBothWaysTakeEquallyLong) {
+TEST(ClockOffset, IsExactForSymmetricDelays) {
   ClockOffset clock;
   EXPECT_FALSE(clock.best());
   EXPECT_TRUE(clock.add(10.0, 110.5, 11.0));
@@ -19,7 +19,7 @@ TEST(ClockOffset, IsExactWhereBothWaysTakeEquallyLong) {
   EXPECT_DOUBLE_EQ(clock.best()->round_trip_s, 1.0);
 }
 
-TEST(ClockOffset, FastestRoundTripOfTheLastSecondsCounts) {
+TEST(ClockOffset, UsesTheFastestRecentRoundTrip) {
   ClockOffset clock;
   clock.add(0.0, 0.25, 0.5);
   clock.add(1.0, 1.05, 1.1);
@@ -30,7 +30,7 @@ TEST(ClockOffset, FastestRoundTripOfTheLastSecondsCounts) {
   EXPECT_NEAR(clock.best()->round_trip_s, 0.5, 1e-12);
 }
 
-TEST(ClockOffset, IsWrongByAtMostHalfTheRoundTrip) {
+TEST(ClockOffset, ErrorIsAtMostHalfTheRoundTrip) {
   constexpr double kOffset_s = -1234.5;
   Random random(1);
   ClockOffset clock;
@@ -45,7 +45,7 @@ TEST(ClockOffset, IsWrongByAtMostHalfTheRoundTrip) {
   }
 }
 
-TEST(ClockOffset, AnswerBeforeItsQuestionIsNotTaken) {
+TEST(ClockOffset, IgnoresAnAnswerThatPrecedesItsRequest) {
   ClockOffset clock;
   EXPECT_FALSE(clock.add(2.0, 0.0, 1.0));
   EXPECT_FALSE(clock.add(std::numeric_limits<double>::quiet_NaN(), 0.0, 1.0));

@@ -25,7 +25,7 @@ HapticClient connected(const std::string& url, bool wants_control = true) {
   return *std::move(client);
 }
 
-TEST(HapticClient, FindsAServerThatIsThere) {
+TEST(HapticClient, ConnectsToARunningServer) {
   const TemporaryFolder folder;
   for (const Endpoint& endpoint : {any_endpoint(), ipc_endpoint(folder)}) {
     RunningServer server(endpoint);
@@ -47,7 +47,7 @@ TEST(HapticClient, FindsAServerThatComesLater) {
   EXPECT_TRUE(client.wait_connected(kPatience));
 }
 
-TEST(HapticClient, TwoServersAndTwoClientsInAnyOrder) {
+TEST(HapticClient, ConnectsTwoClientsToTwoServersInAnyOrder) {
   const TemporaryFolder one, two;
   HapticClient early = connected(ipc_endpoint(one).url);
   const RunningServer second(ipc_endpoint(two));
@@ -68,7 +68,7 @@ TEST(HapticClient, AskGivesTheReplyOrItsError) {
   EXPECT_EQ(std::get<SetParameters>(server.received<Command>().back().what), parameters);
 }
 
-TEST(HapticClient, CommandsHaveTheirOwnNumbersAndReplies) {
+TEST(HapticClient, NumbersCommandsAndMatchesReplies) {
   RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
@@ -82,7 +82,7 @@ TEST(HapticClient, CommandsHaveTheirOwnNumbersAndReplies) {
   EXPECT_TRUE(client.take_replies().empty());
 }
 
-TEST(HapticClient, CommandWithoutServerIsAnsweredSoAndNotKept) {
+TEST(HapticClient, FailsACommandWithoutServerAndDropsIt) {
   const TemporaryFolder folder;
   HapticClient client = connected(ipc_endpoint(folder).url);
   const std::uint32_t request = client.send(ServerCommand::kStart);
@@ -95,7 +95,7 @@ TEST(HapticClient, CommandWithoutServerIsAnsweredSoAndNotKept) {
   ASSERT_EQ(server.received<Command>().size(), 1u);
 }
 
-TEST(HapticClient, BeatsAndKnowsTheServersClock) {
+TEST(HapticClient, SendsHeartbeatsAndEstimatesTheServerClock) {
   RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   EXPECT_TRUE(eventually([&] { return server.received<Heartbeat>().size() > 20; }));
@@ -106,7 +106,7 @@ TEST(HapticClient, BeatsAndKnowsTheServersClock) {
   EXPECT_LE(std::abs(view.clock_offset_s), view.round_trip_s / 2.0);
 }
 
-TEST(HapticClient, TellsTheAgeOfItsWindowsPicture) {
+TEST(HapticClient, ReportsTheAgeOfItsLastFrame) {
   RunningServer server(any_endpoint());
   ClientOptions options;
   options.endpoint = server.url();
@@ -124,7 +124,7 @@ TEST(HapticClient, TellsTheAgeOfItsWindowsPicture) {
   }));
 }
 
-TEST(HapticClient, ReceivesEveryTickInOrderAndTheNewestStatus) {
+TEST(HapticClient, ReceivesTicksInOrderAndTheLatestStatus) {
   RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
@@ -163,7 +163,7 @@ TEST(HapticClient, CountsGapsInTheTicks) {
   EXPECT_EQ(client.view().ticks_received, 30u);
 }
 
-TEST(HapticClient, KeepsAMinuteOfTicksAndCountsTheOlderAsMissing) {
+TEST(HapticClient, KeepsAMinuteOfTicksAndCountsOlderOnesAsMissing) {
   RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
@@ -198,7 +198,7 @@ TEST(HapticClient, SendsTheNewestHand) {
   for (std::size_t i = 1; i < hands.size(); ++i) EXPECT_GT(hands[i].server_time_s, hands[i - 1].server_time_s);
 }
 
-TEST(HapticClient, SecondClientWatchesAndTakesOverWhenTheFirstLeaves) {
+TEST(HapticClient, SecondClientTakesControlWhenTheFirstLeaves) {
   RunningServer server(any_endpoint());
   auto first = std::make_unique<HapticClient>(connected(server.url()));
   ASSERT_TRUE(first->wait_connected(kPatience));
@@ -213,7 +213,7 @@ TEST(HapticClient, SecondClientWatchesAndTakesOverWhenTheFirstLeaves) {
   EXPECT_TRUE(second.ask(ServerCommand::kStart, kPatience));
 }
 
-TEST(HapticClient, NoticesThatTheServerIsGoneAndFindsItAgain) {
+TEST(HapticClient, ReconnectsToARestartedServer) {
   const TemporaryFolder folder;
   auto server = std::make_unique<RunningServer>(ipc_endpoint(folder));
   HapticClient client = connected(ipc_endpoint(folder).url);
@@ -235,7 +235,7 @@ TEST(HapticClient, NoticesThatTheServerIsGoneAndFindsItAgain) {
   EXPECT_TRUE(client.ask(ServerCommand::kStart, kPatience));
 }
 
-TEST(HapticClient, ServerThatForgotItWelcomesItAgainWithControl) {
+TEST(HapticClient, RegainsControlOnAServerThatForgotIt) {
   RunningServer server(any_endpoint());
   HapticClient client = connected(server.url());
   ASSERT_TRUE(client.wait_connected(kPatience));
@@ -289,7 +289,7 @@ class RawServer {
   std::string client_;
 };
 
-TEST(HapticClient, SaysThatItsServerHasAnotherVersion) {
+TEST(HapticClient, ReportsAServerOfAnotherVersion) {
   RawServer server;
   HapticClient client = connected(server.url());
   ASSERT_TRUE(server.receive());
@@ -302,7 +302,7 @@ TEST(HapticClient, SaysThatItsServerHasAnotherVersion) {
   EXPECT_NE(connected.error().text().find("version"), std::string::npos) << connected.error().text();
 }
 
-TEST(HapticClient, GreetsAServerAgainThatHasForgottenIt) {
+TEST(HapticClient, RepeatsHelloToAServerThatForgotIt) {
   RawServer server;
   HapticClient client = connected(server.url());
   ASSERT_TRUE(server.receive());
@@ -319,7 +319,7 @@ TEST(HapticClient, GreetsAServerAgainThatHasForgottenIt) {
   EXPECT_EQ(client.view().refusal, "no session: send Hello first");
 }
 
-TEST(HapticClient, CountsWhatIsNoMessageOfItsServer) {
+TEST(HapticClient, CountsForeignMessages) {
   RawServer server;
   HapticClient client = connected(server.url());
   const auto hello = server.receive();
@@ -337,7 +337,7 @@ TEST(HapticClient, CountsWhatIsNoMessageOfItsServer) {
   EXPECT_EQ(client.view().messages_refused, 5u);
 }
 
-TEST(HapticClient, GreetsAgainUntilItIsWelcomed) {
+TEST(HapticClient, RepeatsHelloUntilWelcomed) {
   RawServer server;
   const HapticClient client = connected(server.url());
   for (int i = 0; i < 3; ++i) {
@@ -348,7 +348,7 @@ TEST(HapticClient, GreetsAgainUntilItIsWelcomed) {
   EXPECT_FALSE(client.view().is_connected);
 }
 
-TEST(HapticClient, GivesUpASilentServerAnswersItsCommandsAndGreetsAnew) {
+TEST(HapticClient, FailsPendingCommandsOfASilentServerAndReconnects) {
   RawServer server;
   HapticClient client = connected(server.url());
   ASSERT_TRUE(server.receive());
@@ -371,7 +371,7 @@ TEST(HapticClient, GivesUpASilentServerAnswersItsCommandsAndGreetsAnew) {
   EXPECT_TRUE(message);
 }
 
-TEST(HapticClient, EndsThoughNobodyAnswers) {
+TEST(HapticClient, DestroysWithoutAnyAnswer) {
   // A port where nobody listens, and a server that never speaks: the destructor must come back from both.
   RawServer mute;
   const TemporaryFolder folder;
@@ -394,7 +394,7 @@ TEST(HapticClient, CanBeMoved) {
   EXPECT_TRUE(other.ask(ServerCommand::kStart, kPatience));
 }
 
-TEST(HapticClient, AllowedKeyIsWelcomedAndOthersAreNot) {
+TEST(HapticClient, ConnectsOnlyWithAnAllowedKey) {
   const CurveKeys server_keys = *make_curve_keys(), allowed = *make_curve_keys(), unknown = *make_curve_keys();
   RunningServer server(any_endpoint(), ServerSecurity{server_keys, {allowed.public_key}});
   ClientOptions options;
@@ -426,7 +426,7 @@ TEST(HapticClient, AllowedKeyIsWelcomedAndOthersAreNot) {
   }
 }
 
-TEST(HapticClient, RefusesAnotherMachineWithoutKeysAndWhatIsNoKey) {
+TEST(HapticClient, RefusesRemoteServersWithoutValidKeys) {
   ClientOptions options;
   options.endpoint = "tcp://192.0.2.1:5571";  // RFC 5737: for documentation, nobody's
   auto client = HapticClient::connect(options);

@@ -46,20 +46,20 @@ TEST(ServerProcess, RunsUntilItIsStopped) {
   process.stop();
 }
 
-TEST(ServerProcess, TellsTheExitStatus) {
+TEST(ServerProcess, ReportsTheExitStatus) {
   ServerProcess process = started("/bin/false", {});
   EXPECT_TRUE(eventually([&] { return !process.is_running(); }));
   EXPECT_EQ(process.how_it_ended(), "ended with exit status 1");
 }
 
-TEST(ServerProcess, TellsThatItWasKilled) {
+TEST(ServerProcess, ReportsAKillSignal) {
   ServerProcess process = started("/bin/sleep", {"1000"});
   ::kill(process.pid(), SIGKILL);
   EXPECT_TRUE(eventually([&] { return !process.is_running(); }));
   EXPECT_EQ(process.how_it_ended(), "was killed by signal 9");
 }
 
-TEST(ServerProcess, KillsWhatDoesNotObey) {
+TEST(ServerProcess, KillsAChildThatIgnoresTerm) {
   const TemporaryFolder folder;
   ServerProcess process =
       started("/bin/sh", {"-c", "trap '' TERM; echo ready >&2; while :; do sleep 0.1; done"}, folder / "log");
@@ -75,7 +75,7 @@ TEST(ServerProcess, StopsASuspendedChild) {
   EXPECT_EQ(process.how_it_ended(), "was killed by signal 15");
 }
 
-TEST(ServerProcess, IsHeldUpWhileItIsStoppedOrBusyAndNotWhileItSleeps) {
+TEST(ServerProcess, IsHeldUpWhenStoppedOrBusyButNotWhenSleeping) {
   ServerProcess sleeper = started("/bin/sleep", {"1000"});
   EXPECT_TRUE(eventually([&] { return !sleeper.is_held_up(); }));
   ::kill(sleeper.pid(), SIGSTOP);
@@ -95,7 +95,7 @@ TEST(ServerProcess, EndsItsChildWhenDestroyed) {
   EXPECT_TRUE(is_gone(pid));
 }
 
-TEST(ServerProcess, PassesArgumentsWholeAndAddsToTheLog) {
+TEST(ServerProcess, PassesArgumentsUnchangedAndAppendsToTheLog) {
   const TemporaryFolder folder;
   std::ofstream(folder / "log") << "before\n";
   ServerProcess process =
@@ -104,14 +104,14 @@ TEST(ServerProcess, PassesArgumentsWholeAndAddsToTheLog) {
   EXPECT_EQ(text_of(folder / "log"), "before\na b\n$HOME'\"\n");
 }
 
-TEST(ServerProcess, ReadsNothingOfOurInput) {
+TEST(ServerProcess, DoesNotReadStandardInput) {
   const TemporaryFolder folder;
   ServerProcess process = started("/bin/sh", {"-c", "cat >&2; echo end >&2"}, folder / "log");
   EXPECT_TRUE(eventually([&] { return !process.is_running(); }));
   EXPECT_EQ(text_of(folder / "log"), "end\n");
 }
 
-TEST(ServerProcess, ProgramThatCannotRunIsAnErrorAndLeavesNoZombie) {
+TEST(ServerProcess, FailsWithoutAZombieForAnUnusableProgram) {
   const TemporaryFolder folder;
   EXPECT_FALSE(ServerProcess::start(folder / "missing", {}));
   std::ofstream(folder / "broken") << "\177ELF, and no more";
@@ -122,7 +122,7 @@ TEST(ServerProcess, ProgramThatCannotRunIsAnErrorAndLeavesNoZombie) {
   EXPECT_EQ(errno, ECHILD);
 }
 
-TEST(ServerProcess, OutlivesTheThreadThatStartedIt) {
+TEST(ServerProcess, SurvivesTheThreadThatStartedIt) {
   std::optional<ServerProcess> process;
   std::thread([&] { process = started("/bin/sleep", {"1000"}); }).join();
   // A signal of the kernel would have come with the thread's end; the next child's whole life is after that.
@@ -131,7 +131,7 @@ TEST(ServerProcess, OutlivesTheThreadThatStartedIt) {
   EXPECT_TRUE(process->is_running());
 }
 
-TEST(ServerProcess, EndsWithAKilledParent) {
+TEST(ServerProcess, DiesWithItsParent) {
   const TemporaryFolder folder;
   const pid_t parent = ::fork();
   if (parent == 0) {
@@ -150,7 +150,7 @@ TEST(ServerProcess, EndsWithAKilledParent) {
   }));
 }
 
-TEST(FindServerProgram, LooksInTheNamedFolderAndOnThePath) {
+TEST(FindServerProgram, SearchesTheNamedFolderAndThePath) {
   const TemporaryFolder folder;
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);

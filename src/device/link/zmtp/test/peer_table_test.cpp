@@ -17,7 +17,7 @@ Peer& joined(PeerTable& peers, const char* id, std::uint64_t session, const Hell
   return *peer;
 }
 
-TEST(PeerTable, SequenceMustRiseButMayLeaveGaps) {
+TEST(PeerTable, RequiresRisingSequencesButAllowsGaps) {
   PeerTable peers(2, 2);
   Peer& peer = joined(peers, "a", 7, kDriver);
   EXPECT_EQ(PeerTable::judge(peer, 7, 0, kJoined_s), Verdict::kReplayed);
@@ -28,7 +28,7 @@ TEST(PeerTable, SequenceMustRiseButMayLeaveGaps) {
   EXPECT_EQ(PeerTable::judge(peer, 8, 6, kJoined_s), Verdict::kUnknownSession);
 }
 
-TEST(PeerTable, OnlyAGoodMessageIsASignOfLife) {
+TEST(PeerTable, OnlyAValidMessageRefreshesAPeer) {
   PeerTable peers(2, 2);
   Peer& peer = joined(peers, "a", 7, kDriver);
   PeerTable::judge(peer, 8, 1, kJoined_s + 1.0);
@@ -38,7 +38,7 @@ TEST(PeerTable, OnlyAGoodMessageIsASignOfLife) {
   EXPECT_EQ(peer.heard_s, kJoined_s + 1.0);
 }
 
-TEST(PeerTable, ControlPassesOnOnlyAfterTheFullSilence) {
+TEST(PeerTable, PassesControlOnlyAfterTheFullTimeout) {
   PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
   joined(peers, "b", 2, kDriver);
@@ -48,7 +48,7 @@ TEST(PeerTable, ControlPassesOnOnlyAfterTheFullSilence) {
   EXPECT_TRUE(peers.has_control(*peers.find("b")));
 }
 
-TEST(PeerTable, SilentControllerKeepsControlWhenNobodyWantedIt) {
+TEST(PeerTable, SilentControllerKeepsControlWithoutAClaimant) {
   PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
   joined(peers, "b", 2, kWatcher);
@@ -56,7 +56,7 @@ TEST(PeerTable, SilentControllerKeepsControlWhenNobodyWantedIt) {
   EXPECT_TRUE(peers.has_control(*peers.find("a")));
 }
 
-TEST(PeerTable, FreshSessionKeepsControlUnlessItIsNoLongerWanted) {
+TEST(PeerTable, NewSessionKeepsControlUnlessItDeclines) {
   PeerTable peers(2, 2);
   Peer& peer = joined(peers, "a", 1, kDriver);
   PeerTable::judge(peer, 1, 1, kJoined_s);
@@ -75,7 +75,7 @@ TEST(PeerTable, HelloOfAnUnusedSessionIsARepetition) {
   EXPECT_EQ(peers.all().size(), 1u);
 }
 
-TEST(PeerTable, FullTableTakesANewPeerForASilentOne) {
+TEST(PeerTable, FullTableReplacesASilentPeer) {
   PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
   joined(peers, "b", 2, kDriver, kJoined_s + 1.0);
@@ -85,7 +85,7 @@ TEST(PeerTable, FullTableTakesANewPeerForASilentOne) {
   EXPECT_NE(peers.find("b"), nullptr);
 }
 
-TEST(PeerTable, ForgottenControllerLeavesControlFree) {
+TEST(PeerTable, ForgettingTheControllerFreesControl) {
   PeerTable peers(2, 2);
   joined(peers, "a", 1, kDriver);
   peers.forget_lost(kJoined_s + 5.0, 5.0);
@@ -97,7 +97,7 @@ TEST(PeerTable, ForgottenControllerLeavesControlFree) {
   EXPECT_EQ(peers.controller(), nullptr);
 }
 
-TEST(PeerTable, ChangingItsWishDoesNotOpenAFullTable) {
+TEST(PeerTable, ChangingRoleDoesNotBypassAFullTable) {
   PeerTable table(1, 1);
   ASSERT_NE(table.greet("controller", {"", true}, 1, 0.0), nullptr);
   ASSERT_NE(table.greet("watcher", {"", false}, 2, 0.0), nullptr);

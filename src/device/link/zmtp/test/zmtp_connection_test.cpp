@@ -50,7 +50,7 @@ ZmtpConnection::Incoming next(ZmtpConnection& connection, double now_s = kReceiv
   return incoming.event == Event::kReady ? connection.next(now_s) : incoming;
 }
 
-TEST(ZmtpConnection, TakesAHandshakeAndMessagesInAnyPieces) {
+TEST(ZmtpConnection, ParsesHandshakeAndMessagesInAnyPieces) {
   for (const std::size_t piece : {1u, 3u, 64u, 1000u}) {
     ZmtpConnection connection(nullptr);
     std::vector<std::byte> bytes = handshake();
@@ -73,7 +73,7 @@ TEST(ZmtpConnection, TakesAHandshakeAndMessagesInAnyPieces) {
   }
 }
 
-TEST(ZmtpConnection, ClosesWhatIsNotAZmtp3Dealer) {
+TEST(ZmtpConnection, ClosesNonZmtp3Dealers) {
   std::vector<std::byte> old = handshake();
   old[10] = std::byte{1};
   for (const auto& bytes : {old, handshake("DEALER", "CURVE"), handshake("REQ"), std::vector<std::byte>(64),
@@ -86,7 +86,7 @@ TEST(ZmtpConnection, ClosesWhatIsNotAZmtp3Dealer) {
   }
 }
 
-TEST(ZmtpConnection, SkipsAMessageOfSeveralFramesAndGoesOn) {
+TEST(ZmtpConnection, SkipsAMultipartMessage) {
   ZmtpConnection connection(nullptr);
   connection.append(handshake());
   connection.append(frame(zmtp::kMore, 3));
@@ -99,7 +99,7 @@ TEST(ZmtpConnection, SkipsAMessageOfSeveralFramesAndGoesOn) {
   EXPECT_EQ(good.message.size(), 9u);
 }
 
-TEST(ZmtpConnection, EndlessMultipartIsBrokenOff) {
+TEST(ZmtpConnection, DisconnectsOnAnEndlessMultipart) {
   ZmtpConnection connection(nullptr);
   connection.set_greeted(true);
   connection.append(handshake());
@@ -113,7 +113,7 @@ TEST(ZmtpConnection, EndlessMultipartIsBrokenOff) {
   EXPECT_EQ(event, Event::kBroken);
 }
 
-TEST(ZmtpConnection, MessagesBeforeHelloAreSmall) {
+TEST(ZmtpConnection, LimitsMessagesBeforeHello) {
   ZmtpConnection stranger(nullptr), greeted(nullptr);
   greeted.set_greeted(true);
   for (ZmtpConnection* connection : {&stranger, &greeted}) {
@@ -126,7 +126,7 @@ TEST(ZmtpConnection, MessagesBeforeHelloAreSmall) {
   EXPECT_EQ(next(greeted).event, Event::kMessage);
 }
 
-TEST(ZmtpConnection, FramesOfAMessageBeforeHelloCountTogether) {
+TEST(ZmtpConnection, SumsTheFramesOfAMessageBeforeHello) {
   for (const std::size_t last : {1u, 2u}) {
     ZmtpConnection connection(nullptr);
     connection.append(handshake());
@@ -137,7 +137,7 @@ TEST(ZmtpConnection, FramesOfAMessageBeforeHelloCountTogether) {
   }
 }
 
-TEST(ZmtpConnection, AMessageOfOneByteTooMuchIsSkippedAndOfTwiceAsMuchBrokenOff) {
+TEST(ZmtpConnection, SkipsOversizedMessagesAndDisconnectsBeyondTwice) {
   const auto event_of = [](std::size_t size) {
     ZmtpConnection connection(nullptr);
     connection.set_greeted(true);
@@ -151,7 +151,7 @@ TEST(ZmtpConnection, AMessageOfOneByteTooMuchIsSkippedAndOfTwiceAsMuchBrokenOff)
   EXPECT_EQ(event_of(2 * kMostMessageBytes + 1), Event::kBroken);
 }
 
-TEST(ZmtpConnection, AMessageOf64FramesOrTwoMebibytesIsSkippedAndOfMoreBrokenOff) {
+TEST(ZmtpConnection, DisconnectsBeyond64FramesOrTwoMebibytes) {
   const auto last_event = [](std::size_t frames, std::size_t size) {
     ZmtpConnection connection(nullptr);
     connection.set_greeted(true);
@@ -169,7 +169,7 @@ TEST(ZmtpConnection, AMessageOf64FramesOrTwoMebibytesIsSkippedAndOfMoreBrokenOff
   EXPECT_EQ(last_event(33, kMostMessageBytes / 16), Event::kBroken);
 }
 
-TEST(ZmtpConnection, AnIdentityHasAtMost255BytesAndNoZeroInFront) {
+TEST(ZmtpConnection, LimitsAnIdentityTo255BytesWithoutLeadingZero) {
   const auto event_of = [](const std::string& identity) {
     ZmtpConnection connection(nullptr);
     connection.append(handshake_as(identity));
@@ -188,7 +188,7 @@ TEST(ZmtpConnection, AnIdentityHasAtMost255BytesAndNoZeroInFront) {
   EXPECT_EQ(event_of(std::string("\0connection 1", 13)), Event::kBroken);
 }
 
-TEST(ZmtpConnection, FrameThatAnnouncesTooMuchIsBrokenOffAtItsHeader) {
+TEST(ZmtpConnection, DisconnectsAtTheHeaderOfATooLongFrame) {
   ZmtpConnection connection(nullptr);
   connection.set_greeted(true);
   connection.append(handshake());
@@ -197,7 +197,7 @@ TEST(ZmtpConnection, FrameThatAnnouncesTooMuchIsBrokenOffAtItsHeader) {
   EXPECT_EQ(next(connection).event, Event::kBroken);
 }
 
-TEST(ZmtpConnection, RateLimitHoldsAFloodBack) {
+TEST(ZmtpConnection, RateLimitThrottlesAFlood) {
   ZmtpConnection connection(nullptr);
   connection.set_greeted(true);
   connection.append(handshake());

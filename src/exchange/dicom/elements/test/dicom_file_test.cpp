@@ -22,7 +22,7 @@ class Elements : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Elements, OfNestedSequencesAreFound) {
+TEST_F(Elements, AreFoundInNestedSequences) {
   for (const Length outer : {Length::kDefined, Length::kUndefined})
     for (const Length inner : {Length::kDefined, Length::kUndefined}) {
       const auto item = [&](const std::string& text) {
@@ -55,7 +55,7 @@ TEST_F(Elements, AreNestedAtMostThirtyTwoDeep) {
   EXPECT_FALSE(read(nested(20'000)));  // would end a program that recurses for each level
 }
 
-TEST_F(Elements, WithoutEndAreRefusedWithoutMemory) {
+TEST_F(Elements, WithoutEndAreRefusedWithoutAllocating) {
   const std::string head = trocar::testing::dicom_file(dicom_element(0x0008, 0x0060, "CS", "SEG"));
   for (const std::uint32_t length : {0xfffffffeU, 0x7fffffffU, 1000U}) {
     const std::string sequence = trocar::testing::little_endian(0x0062, 2) + trocar::testing::little_endian(0x0002, 2) +
@@ -64,14 +64,14 @@ TEST_F(Elements, WithoutEndAreRefusedWithoutMemory) {
   }
 }
 
-TEST_F(Elements, ADamagedSequenceOfKnownLengthIsAnError) {
+TEST_F(Elements, FailOnADamagedSequenceOfKnownLength) {
   const auto file = read(trocar::testing::dicom_file(dicom_element(0x0062, 0x0002, "SQ", "no items")));
   ASSERT_TRUE(file && *file);  // the elements around it are sound
   EXPECT_FALSE((*file)->root().items(tag(0x0062, 0x0002)));
   EXPECT_FALSE((*file)->root().first_item(tag(0x0062, 0x0002)));
 }
 
-TEST_F(Elements, DecimalsAreAllNumbersOrNone) {
+TEST_F(Elements, DecimalsParseCompletelyOrNotAtAll) {
   const auto decimals = [&](const std::string& text) {
     const auto file = read(trocar::testing::dicom_file(dicom_element(0x0020, 0x0032, "DS", text)));
     return (*file)->root().decimals(tag(0x0020, 0x0032));

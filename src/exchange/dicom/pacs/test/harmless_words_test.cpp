@@ -28,7 +28,7 @@ class HarmlessText : public ::testing::Test {
 };
 HarmlessWords HarmlessText::words_;
 
-TEST_F(HarmlessText, UsualDescriptionsOfSeriesStay) {
+TEST_F(HarmlessText, KeepsUsualSeriesDescriptions) {
   for (const char* text : {"Abdomen 3.0",
                            "CT 5mm",
                            "Abdomen  3.0  B30f",
@@ -63,7 +63,7 @@ TEST_F(HarmlessText, UsualDescriptionsOfSeriesStay) {
     EXPECT_TRUE(stays(text)) << text;
 }
 
-TEST_F(HarmlessText, NamesOfStructuresStay) {
+TEST_F(HarmlessText, KeepsStructureNames) {
   for (const char* text : {"liver",
                            "Kidney_L",
                            "Kidney left",
@@ -106,7 +106,7 @@ void for_each_known_structure(Use use) {
   }
 }
 
-TEST_F(HarmlessText, EveryKnownStructureStays) {
+TEST_F(HarmlessText, KeepsEveryKnownStructureName) {
   int count = 0;
   for_each_known_structure([&](const std::string& name) {
     ++count;
@@ -184,7 +184,7 @@ TEST_F(HarmlessText, DatesAndNumbersOfPatientsAreReplaced) {
   EXPECT_FALSE(stays(std::string(2000, '-'))) << "too long";
 }
 
-TEST_F(HarmlessText, MonthsAreOnNoList) {
+TEST_F(HarmlessText, ReplacesNamesOfMonths) {
   for (const char* month :
        {"jan", "feb", "mar", "apr", "may",   "jun",  "jul", "aug",  "sep", "sept", "oct",  "nov",  "dec",
         "mai", "okt", "dez", "mär", "maerz", "janv", "fév", "mars", "avr", "juin", "juil", "août", "déc",
@@ -205,7 +205,7 @@ TEST_F(HarmlessText, IsReadInItsCharacterSet) {
   EXPECT_FALSE(stays("\xf0\x9f\x92\x89"));
 }
 
-TEST_F(HarmlessText, OfAPersonNamedLikeAnOrganIsReplaced) {
+TEST_F(HarmlessText, ReplacesAPersonNamedLikeAnOrgan) {
   IdentityWords names;
   names.add("Kopf^Low", Repertoire::kAscii);
   names.add("Liver^Hans", Repertoire::kAscii);
@@ -220,7 +220,7 @@ TEST_F(HarmlessText, OfAPersonNamedLikeAnOrganIsReplaced) {
   EXPECT_TRUE(stays_with_names("CT Thorax", TextUse::kDescription));
 }
 
-TEST_F(HarmlessText, OfAPersonIsReplacedInEverySpelling) {
+TEST_F(HarmlessText, ReplacesEverySpellingOfAPersonsName) {
   struct Case {
     std::string name;
     std::vector<std::string> replaced;
@@ -261,7 +261,7 @@ TEST_F(HarmlessText, OfAPersonIsReplacedInEverySpelling) {
   }
 }
 
-TEST_F(HarmlessText, NumbersThatAreADateInDisguiseAreReplaced) {
+TEST_F(HarmlessText, ReplacesNumbersThatMayBeDates) {
   for (const char* text : {"17.3", "CT 17.3", "17,3 liver", "31.1", "17 mm 03 mm 45 mm", "17 mm 3 mm 45 mm",
                            "17mm 3mm 45mm", "B30f 17s 03s 45s", "17s 3s 45s", "03 mm", "liver 17.3 5mm"})
     EXPECT_FALSE(stays(text)) << text;
@@ -270,7 +270,7 @@ TEST_F(HarmlessText, NumbersThatAreADateInDisguiseAreReplaced) {
     EXPECT_TRUE(stays(text)) << text;
 }
 
-TEST_F(HarmlessText, CodedValuesOfDicomStay) {
+TEST_F(HarmlessText, KeepsCodedDicomValues) {
   for (const char* value :
        {"ORIGINAL", "CT_SOM5 SPI",  "MONOCHROME2",   "YBR_FULL_422", "ISO_10918_1", "HFS",           "L",
         "LPH",      "HELICAL MODE", "CLOSED_PLANAR", "FLAT",         "ABDOMEN",     "CHEST",         "LIVER",
@@ -280,7 +280,7 @@ TEST_F(HarmlessText, CodedValuesOfDicomStay) {
     EXPECT_FALSE(words_.is_harmless_code(value)) << value;
 }
 
-TEST(HarmlessWordsFile, MistakesAreNamed) {
+TEST(HarmlessWordsFile, NamesMalformedLines) {
   const TemporaryFolder folder;
   for (const char* name :
        {"structures.toml", "structure_codes.toml", "totalsegmentator.toml", "totalsegmentator_tasks.toml"})

@@ -69,7 +69,7 @@ class TlsServer : public ::testing::Test {
   int port_ = 0;
 };
 
-TEST_F(TlsServer, UnknownCertificateIsRefusedBeforeThePasswordIsSent) {
+TEST_F(TlsServer, RefusesAnUnknownCertificateBeforeSendingThePassword) {
   const auto content = get("localhost");
   ASSERT_FALSE(content);
   EXPECT_NE(content.error().what.find("certificate"), std::string::npos) << content.error().text();

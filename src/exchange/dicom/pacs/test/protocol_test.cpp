@@ -11,7 +11,7 @@
 namespace trocar::dicom::detail {
 namespace {
 
-TEST(DimseCommand, IsReadAsItWasWritten) {
+TEST(DimseCommand, RoundTrips) {
   DimseCommand command;
   command.field = DimseField::kMoveResponse;
   command.sop_class = "1.2.840.10008.5.1.4.1.2.2.2";
@@ -29,7 +29,7 @@ TEST(DimseCommand, IsReadAsItWasWritten) {
   EXPECT_FALSE(read->has_data);
 }
 
-TEST(DimseCommand, OtherBytesAreNone) {
+TEST(DimseCommand, RefusesOtherBytes) {
   DimseCommand command;
   command.message_id = 1;
   const std::string bytes = encode(command);
@@ -48,7 +48,7 @@ TEST(Query, AnswerIsReadByTag) {
   EXPECT_EQ(study_of({bytes, {}, {}}).uid, "1.2.3");
 }
 
-TEST(Query, TextsOfAPacsAreShownInOneLine) {
+TEST(Query, SanitisesPacsTextToOneLine) {
   EXPECT_EQ(shown_text("a\x1b[31mb\nc"), "a [31mb c") << "no escape sequences in a terminal";
   EXPECT_EQ(shown_text("B\xe4uch"), "B\xc3\xa4uch") << "ISO 8859-1";
   EXPECT_EQ(shown_text("B\xc3\xa4uch"), "B\xc3\xa4uch") << "UTF-8";
@@ -87,7 +87,7 @@ const std::string kContent =
     "preamble\r\n--b\r\nContent-Type: "
     "application/dicom\r\n\r\nfirst\r\n-\r\n--\r\n--b\r\n\r\nsecond\r\n--b--\r\nepilogue";
 
-TEST(Multipart, IsSplitWhereverTheBytesAreCut) {
+TEST(Multipart, ParsesChunksOfAnySize) {
   for (std::size_t piece = 1; piece <= kContent.size(); ++piece) {
     NotingSink sink;
     MultipartReader reader("b", sink);

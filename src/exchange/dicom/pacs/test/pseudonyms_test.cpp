@@ -8,7 +8,7 @@ namespace {
 constexpr Pseudonyms::Salt kSalt{1, 2, 3};
 constexpr Pseudonyms::Salt kOtherSalt{1, 2, 4};
 
-TEST(Pseudonyms, OfOneUidAreEqual) {
+TEST(Pseudonyms, AreEqualForEqualIds) {
   const Pseudonyms pseudonyms(kSalt);
   EXPECT_EQ(pseudonyms.uid("1.2.3"), pseudonyms.uid("1.2.3"));
   EXPECT_NE(pseudonyms.uid("1.2.3"), pseudonyms.uid("1.2.4"));
@@ -32,7 +32,7 @@ TEST(Pseudonyms, AreUids) {
   }
 }
 
-TEST(Pseudonyms, LeaveTheUidsOfDicomAlone) {
+TEST(Pseudonyms, KeepStandardDicomUids) {
   const Pseudonyms pseudonyms(kSalt);
   EXPECT_EQ(pseudonyms.uid("1.2.840.10008.5.1.4.1.1.2"), "1.2.840.10008.5.1.4.1.1.2");
   EXPECT_NE(pseudonyms.uid("1.2.840.10008.MUSTERMANN"), "1.2.840.10008.MUSTERMANN") << "no UID at all";

@@ -104,7 +104,7 @@ TEST_F(Rewriting, StatesTheAnonymisation) {
   EXPECT_TRUE(file.root().find(0x00080020)) << "may be empty, must not be missing";
 }
 
-TEST_F(Rewriting, ReferencesFitTheObjectsThatTheyName) {
+TEST_F(Rewriting, KeepsReferencesConsistent) {
   ASSERT_TRUE(anonymised(testing::made_ct(1).file()));
   const DicomFile ct = read_back();
   ASSERT_TRUE(anonymised(testing::made_structures().file()));
@@ -142,7 +142,7 @@ TEST_F(Rewriting, ReadsADataSetWithoutMetaInformation) {
   EXPECT_EQ(*whole, *bare) << "both protocols give the same file";
 }
 
-TEST_F(Rewriting, SequenceOfUnknownRepresentationIsTreatedInside) {
+TEST_F(Rewriting, TreatsSequencesOfUnknownRepresentation) {
   MadeObject object = small_object(kExplicit), image(kImplicit);
   image.add(0x00081155, "UI", "1.3.6.1.4.1.99999.5").add(0x00100010, "PN", "Mustermann");
   object.add_items(0x00081140, {image}, "UN");
@@ -205,7 +205,7 @@ TEST_F(Rewriting, NamesAreRemovedInEveryCharacterSet) {
   }
 }
 
-TEST_F(Rewriting, TextsOfAnItemAreReadInItsOwnCharacterSet) {
+TEST_F(Rewriting, ReadsTextsInTheCharacterSetOfTheirItem) {
   MadeObject object = small_object(kExplicit), segment, other;
   segment.add(0x00620005, "LO", "ven\xf6s");
   other.add(0x00080005, "CS", "ISO_IR 192").add(0x00620005, "LO", "ven\xc3\xb6s");
@@ -218,7 +218,7 @@ TEST_F(Rewriting, TextsOfAnItemAreReadInItsOwnCharacterSet) {
   EXPECT_EQ((*segments)[1].text(0x00620005), "ven\xc3\xb6s");
 }
 
-TEST_F(Rewriting, TextInTheElementOfANumberIsRemoved) {
+TEST_F(Rewriting, RemovesTextFromNumericElements) {
   MadeObject object = small_object(kExplicit);
   object.add(0x00280106, "LO", "MUELLER");
   const auto bytes = anonymised(object.file());
@@ -227,7 +227,7 @@ TEST_F(Rewriting, TextInTheElementOfANumberIsRemoved) {
   EXPECT_FALSE(read_back().root().find(0x00280106));
 }
 
-TEST_F(Rewriting, TextInAnElementOfUnknownOrNoRepresentationIsRemoved) {
+TEST_F(Rewriting, RemovesTextOfUnknownRepresentation) {
   const std::vector<std::pair<Encoding, std::string>> encodings = {{kExplicit, kExplicitUid},
                                                                    {kImplicit, "1.2.840.10008.1.2"}};
   for (const auto& [encoding, uid] : encodings) {
@@ -253,7 +253,7 @@ TEST_F(Rewriting, ElementsBehindThePixelsAreRemoved) {
   expect_no_identity(*bytes);
 }
 
-TEST_F(Rewriting, EveryTruncationIsRefusedOrHarmless) {
+TEST_F(Rewriting, RefusesOrAnonymisesEveryTruncation) {
   const std::string whole = testing::made_structures().file();
   int refused = 0;
   for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -295,7 +295,7 @@ TEST_F(Rewriting, DeepNestingIsRefused) {
   EXPECT_NE(bytes.error().what.find("damaged sequence"), std::string::npos) << bytes.error().text();
 }
 
-TEST(DataSet, OtherBytesAreNoDicom) {
+TEST(DataSet, RejectsNonDicomBytes) {
   for (const std::string& bytes : {std::string(), std::string("<html>"), std::string(4096, 'x')}) {
     const auto found = find_data_set(bytes, {});
     ASSERT_FALSE(found);
@@ -304,7 +304,7 @@ TEST(DataSet, OtherBytesAreNoDicom) {
   EXPECT_FALSE(find_data_set(testing::made_ct(0).file("1.2.840.10008.1.2.1.99"), {})) << "deflated";
 }
 
-TEST(DataSet, ImagesThatMayShowTextAreFound) {
+TEST(DataSet, DetectsImagesThatMayShowText) {
   const auto may_show = [](MadeObject object) {
     return summarize(*find_data_set(object.bytes(), kExplicitUid))->may_show_text;
   };

@@ -18,7 +18,7 @@ class Treating : public ::testing::Test {
   ValueTreatment treat_{rules_};
 };
 
-TEST_F(Treating, EqualTextsHaveEqualCodes) {
+TEST_F(Treating, GivesEqualTextsEqualCodes) {
   EXPECT_EQ(treated("CT M\xdcLLER 5mm ", Treatment::kSeries), "series-01");
   EXPECT_EQ(treated("CT Mueller 5mm", Treatment::kSeries), "series-02");
   EXPECT_EQ(treated("CT M\xdcLLER 5mm", Treatment::kSeries), "series-01");
@@ -30,19 +30,19 @@ TEST_F(Treating, EqualTextsHaveEqualCodes) {
   EXPECT_EQ(rules_.codes.count(TextCodes::Kind::kOther), 1U);
 }
 
-TEST_F(Treating, EveryValueOfATextCounts) {
+TEST_F(Treating, ChecksEveryValueOfAText) {
   EXPECT_EQ(treated("BONE\\Mueller\\LUNG ", Treatment::kText), "BONE\\text-01\\LUNG");
   EXPECT_EQ(treated("", Treatment::kStructure), "");
   EXPECT_EQ(treated("  ", Treatment::kStructure), "");
 }
 
-TEST_F(Treating, CodedValuesAreDefinedTerms) {
+TEST_F(Treating, KeepsOnlyDefinedTermsAsCodedValues) {
   EXPECT_EQ(treated("ORIGINAL\\PRIMARY\\AXIAL\\MUELLER", Treatment::kCode), "ORIGINAL\\PRIMARY\\AXIAL\\OTHER");
   EXPECT_EQ(treated("DERIVED\\\\X", Treatment::kCode), "DERIVED\\\\X");
   EXPECT_EQ(rules_.codes.count(TextCodes::Kind::kOther), 1U);
 }
 
-TEST_F(Treating, NumbersAreNumbers) {
+TEST_F(Treating, KeepsOnlyNumbersInNumericElements) {
   EXPECT_EQ(treated("-4\\-8.5\\1e2 ", Treatment::kNumber), "-4\\-8.5\\1e2 ");
   EXPECT_EQ(treated(std::string_view("12\0", 3), Treatment::kNumber), std::string("12\0", 3));
   EXPECT_EQ(treated("Mueller", Treatment::kNumber), "");
@@ -59,7 +59,7 @@ std::string bytes_of_doubles(const std::vector<double>& numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)};
 }
 
-TEST(TextInNumbers, IsToldFromNumbers) {
+TEST(TextInNumbers, IsDistinguishedFromNumbers) {
   for (const char* text : {"Mueller x", "Mueller^Hans", "17031945", "17.03.45", "O'Brien "}) {
     EXPECT_TRUE(is_text(text, "UN")) << text;
     EXPECT_TRUE(is_text(text, "")) << text << ": implicit VR";
@@ -76,7 +76,7 @@ TEST(TextInNumbers, IsToldFromNumbers) {
   EXPECT_FALSE(is_text("", "UN"));
 }
 
-TEST_F(Treating, CodesAreOfPublicSchemes) {
+TEST_F(Treating, KeepsOnlyCodesOfPublicSchemes) {
   const auto code = [&](std::string_view value, std::string_view scheme) {
     ValueContext context;
     context.coding_scheme = scheme;
@@ -93,7 +93,7 @@ TEST_F(Treating, CodesAreOfPublicSchemes) {
   EXPECT_EQ(treated("99MUELLER", Treatment::kCodingScheme), "99REPLACED");
 }
 
-TEST_F(Treating, CharacterSetsAreThoseOfDicom) {
+TEST_F(Treating, KeepsOnlyDicomCharacterSets) {
   for (const char* known :
        {"ISO_IR 100", "ISO_IR 101", "ISO_IR 109", "ISO_IR 110", "ISO_IR 126", "ISO_IR 127", "ISO_IR 138", "ISO_IR 144",
         "ISO_IR 148", "ISO_IR 166", "ISO_IR 192", "GB18030", "\\ISO 2022 IR 87", ""})
@@ -101,7 +101,7 @@ TEST_F(Treating, CharacterSetsAreThoseOfDicom) {
   EXPECT_EQ(treated("MUELLER", Treatment::kCharacters), "");
 }
 
-TEST_F(Treating, DatesAndNamesAreFixed) {
+TEST_F(Treating, ReplacesDatesAndNamesByFixedValues) {
   EXPECT_EQ(treated("19450317", Treatment::kDate), "20000101");
   EXPECT_EQ(treated("101530", Treatment::kTime), "000000");
   EXPECT_EQ(treated("Mueller", Treatment::kEmpty), "");

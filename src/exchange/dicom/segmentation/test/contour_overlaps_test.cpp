@@ -50,7 +50,7 @@ Filled fill(const std::vector<Contour>& contours, double pixel_mm = 0.5, bool is
   return filled;
 }
 
-TEST(ContourOverlaps, OneOutlineDrawnTwiceCountsOnce) {
+TEST(ContourOverlaps, DuplicateOutlineCountsOnce) {
   const Contour once = disc(3, 4, 50);
   Contour turned = once, reversed(once.rbegin(), once.rend()), closed = once, thinned, denser = disc(3, 4, 50, 240);
   std::rotate(turned.begin(), turned.begin() + 37, turned.end());
@@ -74,7 +74,7 @@ TEST(ContourOverlaps, OneOutlineDrawnTwiceCountsOnce) {
     EXPECT_EQ(fill({disc(0, 0, radius_mm), moved(disc(0, 0, radius_mm), 0.05)}).raster.repeated, 1U) << radius_mm;
 }
 
-TEST(ContourOverlaps, SecondDrawingsThatDifferAreUnited) {
+TEST(ContourOverlaps, UnitesDifferingSecondDrawings) {
   for (const double shift_mm : {1.0, 3.0, 20.0}) {
     const Filled filled = fill({disc(0, 0, 50), moved(disc(0, 0, 50), shift_mm)});
     const double half = std::acos(shift_mm / 100.0);
@@ -102,7 +102,7 @@ TEST(ContourOverlaps, PartsThatOverlapAreUnited) {
   EXPECT_EQ(touching.raster.crossing, 0U);
 }
 
-TEST(ContourOverlaps, NestedOnesAreHolesAndIslands) {
+TEST(ContourOverlaps, NestedContoursAreHolesAndIslands) {
   const double ring = pi * (2500.0 - 900.0);
   EXPECT_NEAR(fill({disc(0, 0, 50), disc(5, 0, 30)}).area_mm2 / ring, 1.0, 0.01);
   EXPECT_NEAR(fill({disc(5, 0, 30), disc(0, 0, 50)}, 0.5, true).area_mm2 / ring, 1.0, 0.01);
@@ -129,7 +129,7 @@ TEST(ContourOverlaps, NestedOnesAreHolesAndIslands) {
               120.0);
 }
 
-TEST(ContourOverlaps, ThinRingsStayAndAreTold) {
+TEST(ContourOverlaps, KeepsThinRingsAndReportsThem) {
   for (const double wall_mm : {1.0, 2.0, 4.0}) {
     const Filled filled = fill({disc(0, 0, 80), disc(0, 0, 80 - wall_mm)}, 0.25);
     EXPECT_NEAR(filled.area_mm2 / (pi * (6400.0 - (80 - wall_mm) * (80 - wall_mm))), 1.0, 0.05) << wall_mm;
@@ -141,7 +141,7 @@ TEST(ContourOverlaps, ThinRingsStayAndAreTold) {
   EXPECT_EQ(fill({disc(0, 0, 50), disc(0, 0, 30)}).raster.doubtful, 0U);
 }
 
-TEST(ContourOverlaps, ExclusiveOrKeepsItsMeaning) {
+TEST(ContourOverlaps, ExclusiveOrExcludesTheOverlap) {
   const std::vector<Contour> parts{block_of(-50, 10, -20, 20), block_of(-10, 50, -20, 20)};
   const Filled filled = fill(parts, 0.5, true);
   EXPECT_NEAR(filled.area_mm2, 4000.0 - 800.0, 50.0);

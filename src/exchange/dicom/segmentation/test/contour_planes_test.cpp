@@ -108,7 +108,7 @@ TEST(ContourPlanes, JitterAboveTheSliceDistanceKeepsTheVolume) {
   }
 }
 
-TEST(ContourPlanes, HalfWayBetweenSlicesAndOnEverySecondOne) {
+TEST(ContourPlanes, KeepVolumeBetweenSlicesAndOnEverySecondSlice) {
   const volume::GridGeometry ct = slices_of(5.0);
   EXPECT_NEAR(draw(cylinder(places(-47.5, 47.5, 5)), ct).ml / cylinder_ml(30, 100), 1.0, 0.005);
   EXPECT_NEAR(draw(cylinder(places(-47.4, 47.6, 5)), ct).ml / cylinder_ml(30, 100), 1.0, 0.005);
@@ -138,7 +138,7 @@ TEST(ContourPlanes, UnevenDistancesKeepTheVolume) {
   }
 }
 
-TEST(ContourPlanes, DrawnTwiceCountOnce) {
+TEST(ContourPlanes, CountOnceWhenDrawnTwice) {
   const volume::GridGeometry ct = slices_of(1.0);
   for (const double apart_mm : {0.1, 0.4, 0.9, 1.2}) {
     std::vector<double> twice;
@@ -183,7 +183,7 @@ TEST(ContourPlanes, LobesSideBySideHaveTheirOwnPlanes) {
   }
 }
 
-TEST(ContourPlanes, BranchesLeaveNoSliceEmpty) {
+TEST(ContourPlanes, BranchesFillEverySlice) {
   // A trunk that splits into two branches whose planes are shifted.
   const volume::GridGeometry ct = slices_of(1.0);
   std::vector<Contour> tree = cylinder(places(-50, 0, 5), 40);

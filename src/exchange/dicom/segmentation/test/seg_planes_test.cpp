@@ -37,7 +37,7 @@ TestSeg drawn_at(const std::vector<double>& places_mm) {
   return seg;
 }
 
-TEST_F(Seg, WithoutSlicesOfTheCtStepsComeFromTheFile) {
+TEST_F(Seg, UsesTheFilesSliceStepWithoutCtSlices) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver")};
   seg.frames = {{1, at_z(0), block(0, 4)}, {1, at_z(6), block(0, 4)}};
@@ -55,7 +55,7 @@ TEST_F(Seg, WithoutSlicesOfTheCtStepsComeFromTheFile) {
   EXPECT_EQ(read(seg, other_format)->volumes[0].labels.geometry.spacing_mm.z(), 2.0);
 }
 
-TEST_F(Seg, OnUnevenSlicesKeepsEachSlicesReach) {
+TEST_F(Seg, KeepsTheExtentOfUnevenSlices) {
   // Slices at 0, 2, 4, 8, 12: the plane at 8 reaches from 6 to 10.
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver")};
@@ -105,7 +105,7 @@ TEST_F(Seg, ThickPlanesFillTheSlicesOfAThinnerCt) {
   EXPECT_EQ(filled(single), (std::vector<double>{4, 5, 6, 7, 8}));
 }
 
-TEST_F(Seg, ThickPlanesOfALabelMapFillTheirThickness) {
+TEST_F(Seg, ThickPlanesOfALabelMapFillThinnerSlices) {
   TestSeg seg;
   seg.type = "LABELMAP";
   seg.bits = 8;
@@ -118,7 +118,7 @@ TEST_F(Seg, ThickPlanesOfALabelMapFillTheirThickness) {
   EXPECT_EQ(voxels_of(*read_seg, 1).size(), 2U * 6 * 6 + 2U * 5 * 6);
 }
 
-TEST_F(Seg, PlanesOnNeighbouringSlicesAreAsThickAsThese) {
+TEST_F(Seg, PlanesOnAdjacentSlicesAreOneSliceThick) {
   // Overlapping reconstructions are thicker than their distance.
   const std::vector<double> slices_mm{0, 2, 4, 6, 8, 10, 12};
   TestSeg seg = drawn_at({4, 6, 10});
@@ -167,7 +167,7 @@ TEST_F(Seg, StructuresOfStripesAreRefused) {
   EXPECT_EQ(error_of(seg, ct_with_slices(slices_mm)), "read");
 }
 
-TEST_F(Seg, EmptyPlanesWithinAStructureAreTold) {
+TEST_F(Seg, ReportsEmptyPlanesWithinAStructure) {
   const std::vector<double> slices_mm{0, 2, 4, 6, 8, 10, 12};
   const auto told = read(drawn_at({0, 2, 6, 8, 12}), ct_with_slices(slices_mm));
   EXPECT_EQ(filled_slices(told, slices_mm), (std::vector<double>{0, 2, 6, 8, 12}));
@@ -199,7 +199,7 @@ TEST_F(Seg, ObliqueFramesKeepTheirDirections) {
   EXPECT_EQ(g.size[2], 3);
 }
 
-TEST_F(Seg, OfASiblingWithThinSlicesKeepsItsPlaces) {
+TEST_F(Seg, KeepsPositionsOfAThinSlicedSiblingSeries) {
   // Slices of 0.5 mm beside those of the CT, 2 mm apart: the volume is 5 x 6 x 4 mm.
   TestSeg seg;
   seg.series_uid = "1.2.4";

@@ -19,7 +19,7 @@ using trocar::testing::Length;
 using trocar::testing::segment_item;
 using trocar::testing::TestSeg;
 
-TEST_F(Seg, FramesInAnyOrderLandOnTheirPlaces) {
+TEST_F(Seg, PlacesFramesInAnyOrder) {
   for (const Length length : {Length::kDefined, Length::kUndefined}) {
     TestSeg seg;
     seg.length = length;
@@ -42,7 +42,7 @@ TEST_F(Seg, FramesInAnyOrderLandOnTheirPlaces) {
   }
 }
 
-TEST_F(Seg, OverlappingSegmentsComeInSeveralVolumes) {
+TEST_F(Seg, SplitsOverlappingSegmentsIntoVolumes) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver"), segment_item(2, "Tumor"), segment_item(3, "Spleen")};
   seg.frames = {{1, at_z(0), block(0, 4)}, {2, at_z(0), block(2, 3)}, {3, at_z(0), block(6, 7)}};
@@ -54,7 +54,7 @@ TEST_F(Seg, OverlappingSegmentsComeInSeveralVolumes) {
   EXPECT_EQ(voxels_of(*read_seg, 2).size(), 2U * 6);
 }
 
-TEST_F(Seg, FramesOfOnePlaneThatDifferAreTold) {
+TEST_F(Seg, ReportsDifferingFramesOfOnePlane) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver"), segment_item(2, "Spleen")};
   seg.frames = {
@@ -67,7 +67,7 @@ TEST_F(Seg, FramesOfOnePlaneThatDifferAreTold) {
   EXPECT_NE(told->warnings[0].find("\"Liver\": 1 frame of a plane"), std::string::npos) << told->warnings[0];
 }
 
-TEST_F(Seg, FractionIsInsideFromHalfOfTheMaximum) {
+TEST_F(Seg, ThresholdsFractionsAtHalfTheMaximum) {
   for (const int maximum : {255, 100}) {
     TestSeg seg;
     seg.type = "FRACTIONAL";
@@ -89,7 +89,7 @@ TEST_F(Seg, FractionIsInsideFromHalfOfTheMaximum) {
   EXPECT_EQ(voxels_of(*read(half), 0).size(), 4U * 6);
 }
 
-TEST_F(Seg, FractionsThatAreAllBelowHalfAreRefusedWithTheirNumbers) {
+TEST_F(Seg, RefusesFractionsAllBelowHalf) {
   TestSeg seg;
   seg.type = "FRACTIONAL";
   seg.bits = 8;
@@ -138,7 +138,7 @@ TEST_F(Seg, FramesOfAnotherSpacingOrDirectionAreRefused) {
   EXPECT_EQ(changed(2, [](TestFrame& f) { f.directions = {1, 0, 0, 0, 1, 0}; }), "read");
 }
 
-TEST_F(Seg, LabelMapHasNumbersOfSegments) {
+TEST_F(Seg, ReadsALabelMapBySegmentNumber) {
   for (const int bits : {8, 16}) {
     TestSeg seg;
     seg.type = "LABELMAP";
@@ -159,7 +159,7 @@ TEST_F(Seg, LabelMapHasNumbersOfSegments) {
   }
 }
 
-TEST_F(Seg, NumbersOfALabelMapWithoutASegmentAreRefused) {
+TEST_F(Seg, RefusesLabelMapNumbersWithoutASegment) {
   TestSeg seg;
   seg.type = "LABELMAP";
   seg.bits = 8;
@@ -195,7 +195,7 @@ TEST_F(Seg, FramesOfAnUndefinedSegmentAreRefused) {
   EXPECT_EQ(error_of(seg), "read");
 }
 
-TEST_F(Seg, OtherThanWantedSegmentsAreLeftOut) {
+TEST_F(Seg, ReadsOnlyTheRequestedSegments) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver"), segment_item(2, "Spleen")};
   seg.frames = {{1, at_z(0), block(0, 4)}, {2, at_z(0), block(2, 3)}};
@@ -208,7 +208,7 @@ TEST_F(Seg, OtherThanWantedSegmentsAreLeftOut) {
   EXPECT_EQ(voxels_of(*read_seg, 0).size(), 2U * 6);
 }
 
-TEST_F(Seg, NamesComeFromLabelTypeAndRegion) {
+TEST_F(Seg, BuildsNamesFromLabelTypeAndRegion) {
   TestSeg seg;
   const std::string left = trocar::testing::dicom_code(0x0062, 0x0011, "7771000", "SCT", "Left");
   seg.segments = {segment_item(1, "Segment_1",
@@ -232,7 +232,7 @@ TEST_F(Seg, NamesComeFromLabelTypeAndRegion) {
   EXPECT_EQ(read_seg->segments[1].type_in_region, "Liver Neoplasm");
 }
 
-TEST_F(Seg, OfAnotherSeriesIsRefused) {
+TEST_F(Seg, RefusesAnotherSeries) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver")};
   seg.frames = {{1, at_z(0), block(0, 4)}};
@@ -249,7 +249,7 @@ TEST_F(Seg, OfAnotherSeriesIsRefused) {
   EXPECT_NE(error_of(seg).find("another frame of reference"), std::string::npos) << error_of(seg);
 }
 
-TEST_F(Seg, OfASiblingSeriesIsReadOnRequest) {
+TEST_F(Seg, ReadsASiblingSeriesOnRequest) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver")};
   seg.frames = {{1, at_z(0), block(0, 4)}};
@@ -278,7 +278,7 @@ TEST_F(Seg, OfASiblingSeriesIsReadOnRequest) {
   EXPECT_NE(error_of(seg, ct).find("another series"), std::string::npos) << error_of(seg, ct);
 }
 
-TEST_F(Seg, OfASeriesThatIsNoVolumeTellsWhatIsThere) {
+TEST_F(Seg, ErrorNamesWhyTheReferencedSeriesIsUnusable) {
   TestSeg seg;
   seg.segments = {segment_item(1, "Liver")};
   seg.frames = {{1, at_z(0), block(0, 4)}};
@@ -301,7 +301,7 @@ TEST_F(Seg, OfASeriesThatIsNoVolumeTellsWhatIsThere) {
   }
 }
 
-TEST_F(Seg, ThatCannotBeReadIsRefusedByItsDefect) {
+TEST_F(Seg, NamesTheDefectOfARefusedFile) {
   const auto changed = [&](const std::function<void(TestSeg&)>& change) {
     TestSeg seg;
     seg.segments = {segment_item(1, "Liver")};
@@ -329,7 +329,7 @@ TEST_F(Seg, ThatCannotBeReadIsRefusedByItsDefect) {
   EXPECT_NE(changed([](TestSeg& s) { s.R_PV.col(0) = s.R_PV.col(1); }).find("directions"), std::string::npos);
 }
 
-TEST_F(Seg, ThatIsCutShortOrChangedIsReadOrRefusedInOneLine) {
+TEST_F(Seg, ReadsOrRefusesDamagedFilesInOneLine) {
   // Every length of the file, and every byte with another value: no crash, no exception, no line without a file.
   TestSeg seg;
   seg.columns = 4;

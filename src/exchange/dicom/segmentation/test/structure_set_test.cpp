@@ -122,7 +122,7 @@ TEST_F(StructureSet, ARoundContourHasItsVolume) {
   EXPECT_NEAR(volume_mm3 / discs_mm3, 1.0, 0.02);
 }
 
-TEST_F(StructureSet, ContoursBetweenSlicesReachHalfWay) {
+TEST_F(StructureSet, ContoursBetweenSlicesReachHalfwayToTheNext) {
   const CtReference ct = turned_ct();
   // Contours on every other slice of the CT, and between slices.
   const auto every_other =
@@ -138,7 +138,7 @@ TEST_F(StructureSet, ContoursBetweenSlicesReachHalfWay) {
   EXPECT_EQ(voxels_by_plane(*read({fine}), 0), (std::vector<std::size_t>{0, 0, 50, 25, 50, 0, 0, 0, 0, 0}));
 }
 
-TEST_F(StructureSet, OneForgottenPlaneIsFilledAndAWideGapIsNot) {
+TEST_F(StructureSet, FillsOneMissingPlaneButNotAWideGap) {
   const CtReference ct = turned_ct();
   TestStructure structure{"Liver", {}};
   for (const int w : {0, 1, 3, 7, 8}) structure.contours.emplace_back(kClosed, rectangle(ct, 5, 15, 5, 10, w));
@@ -153,7 +153,7 @@ TEST_F(StructureSet, OneForgottenPlaneIsFilledAndAWideGapIsNot) {
       << read_set->warnings[1];
 }
 
-TEST_F(StructureSet, RepeatedAndDegenerateContoursAreLeftOut) {
+TEST_F(StructureSet, SkipsRepeatedAndDegenerateContours) {
   const CtReference ct = turned_ct();
   const auto read_set = read({{"Liver",
                                {{kClosed, rectangle(ct, 5, 15, 5, 10, 2)},
@@ -164,7 +164,7 @@ TEST_F(StructureSet, RepeatedAndDegenerateContoursAreLeftOut) {
   EXPECT_EQ(read_set->warnings.size(), 2U);
 }
 
-TEST_F(StructureSet, OverlappingContoursAreTold) {
+TEST_F(StructureSet, ReportsOverlappingContours) {
   const CtReference ct = turned_ct();
   const auto warnings_of = [&](const char* type) {
     const auto parts =
@@ -182,7 +182,7 @@ TEST_F(StructureSet, OverlappingContoursAreTold) {
   EXPECT_NE(ring->warnings[0].find("1 hole of 2."), std::string::npos) << ring->warnings[0];
 }
 
-TEST_F(StructureSet, ContoursInAnotherPlaneThanTheSlicesAreRead) {
+TEST_F(StructureSet, ReadsContoursInAnyPlane) {
   // On an oblique CT: contours in its slices, in its sagittal planes, and in no plane of it.
   const Mat3 R = (Eigen::AngleAxisd(0.3, Vec3::UnitX()) * Eigen::AngleAxisd(0.5, Vec3::UnitZ())).toRotationMatrix();
   const CtReference ct = turned_ct(R);
@@ -214,7 +214,7 @@ TEST_F(StructureSet, ContoursInAnotherPlaneThanTheSlicesAreRead) {
   EXPECT_NEAR(inside * labels.geometry.voxel_volume_mm3(), 10.0 * 8.0 * 12.0, 0.12 * 960.0);
 }
 
-TEST_F(StructureSet, OpenContoursAreRefusedByNameInOneLine) {
+TEST_F(StructureSet, RefusesOpenContoursByName) {
   const CtReference ct = turned_ct();
   const Points square = rectangle(ct, 5, 15, 5, 10, 2);
   const std::string error = error_of({{"Liver", {{kClosed, square}}},
@@ -239,14 +239,14 @@ TEST_F(StructureSet, OpenContoursAreRefusedByNameInOneLine) {
   EXPECT_TRUE(read_segmentation(folder_ / "rs.dcm", ct, [](const Segment& s) { return s.name == "Liver"; }));
 }
 
-TEST_F(StructureSet, BentContoursAreRefused) {
+TEST_F(StructureSet, RefusesNonPlanarContours) {
   const CtReference ct = turned_ct();
   Points bent = rectangle(ct, 5, 15, 5, 10, 2);
   bent[2].z() += 4.0;
   EXPECT_NE(error_of({{"Liver", {{kClosed, bent}}}}).find("contour 1 of \"Liver\" is not planar"), std::string::npos);
 }
 
-TEST_F(StructureSet, OfAnotherSeriesIsRefused) {
+TEST_F(StructureSet, RefusesAnotherSeries) {
   const CtReference ct = turned_ct();
   const std::vector<TestStructure> liver{{"Liver", {{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}}}};
   const auto error_with = [&](const std::string& series, const std::string& frame) {
@@ -260,7 +260,7 @@ TEST_F(StructureSet, OfAnotherSeriesIsRefused) {
   EXPECT_NE(error_with("", "1.2.8").find("another frame of reference"), std::string::npos);
 }
 
-TEST_F(StructureSet, NumbersThatAreNotOneStructuresAreRefused) {
+TEST_F(StructureSet, RefusesAmbiguousStructureNumbers) {
   const CtReference ct = turned_ct();
   const std::vector<std::pair<std::string, Points>> square{{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}};
   EXPECT_EQ(error_of({{"Liver", square, "7"}, {"Spleen", square, "9"}}), "read");
@@ -283,7 +283,7 @@ TEST_F(StructureSet, NumbersThatAreNotOneStructuresAreRefused) {
   EXPECT_EQ(voxels_by_plane(*both, 0)[2] + voxels_by_plane(*both, 0)[4], 100U);
 }
 
-TEST_F(StructureSet, AStructureInAnotherFrameOfReferenceIsRefused) {
+TEST_F(StructureSet, RefusesAStructureInAnotherFrameOfReference) {
   const CtReference ct = turned_ct();
   const std::vector<std::pair<std::string, Points>> square{{kClosed, rectangle(ct, 5, 15, 5, 10, 2)}};
   const auto with_frame = [&](const std::string& name, const std::string& frame) {
@@ -318,7 +318,7 @@ TEST_F(StructureSet, NamesAreUtf8) {
   EXPECT_EQ(read_set->segments[0].name, "L\xc3\xa9sion");
 }
 
-TEST_F(StructureSet, ThatIsCutShortOrChangedIsReadOrRefusedInOneLine) {
+TEST_F(StructureSet, ReadsOrRefusesDamagedFilesInOneLine) {
   const CtReference ct = turned_ct();
   std::size_t refused = 0;
   std::size_t accepted = 0;

@@ -22,7 +22,7 @@ std::vector<T> pixels_by_slice(const SliceStack& stack, const std::vector<T>& va
   return pixels;
 }
 
-TEST(SliceStack, EvenSlicesAreTakenAsTheyAre) {
+TEST(SliceStack, KeepsEvenSlicesUnchanged) {
   const SliceStack stack = stack_at({0, 2, 4});
   const StackPlan plan = plan_stack(stack).value();
   EXPECT_TRUE(plan.is_plain);
@@ -44,7 +44,7 @@ TEST(SliceStack, UnevenNumbersAreInterpolatedAndLabelsAreNot) {
   EXPECT_EQ((labels[{1, 1, 3}]), 3);
 }
 
-TEST(SliceStack, TiltedSlicesAreShiftedByTheirPixels) {
+TEST(SliceStack, ShiftsTiltedSlices) {
   const SliceStack stack = stack_at({0, 2, 4}, -0.5);  // one row to the front for each slice
   const StackPlan plan = plan_stack(stack).value();
   ASSERT_FALSE(plan.is_plain);
@@ -55,7 +55,7 @@ TEST(SliceStack, TiltedSlicesAreShiftedByTheirPixels) {
     for (std::int64_t j = 0; j < 6; ++j) EXPECT_EQ((labels[{1, j, k}]), j >= 2 - k && j < 6 - k ? k + 1 : 9) << j << k;
 }
 
-TEST(SliceStack, AbsurdPlacesHaveNoPlan) {
+TEST(SliceStack, HasNoPlanForAbsurdPositions) {
   EXPECT_FALSE(plan_stack(stack_at({0, 2, 4, 5000})));
   EXPECT_FALSE(plan_stack(stack_at({0, 2, 4}, 1.5)));
   EXPECT_TRUE(is_sane(stack_at({0, 2, 4})));
@@ -65,7 +65,7 @@ TEST(SliceStack, AbsurdPlacesHaveNoPlan) {
   EXPECT_FALSE(is_sane(stack));
 }
 
-TEST(SliceStack, WidestGapIsNamedByItsSlice) {
+TEST(SliceStack, NamesTheSliceAtTheWidestGap) {
   const StackGap gap = widest_gap(stack_at({0, 2, 4, 9, 11}));
   EXPECT_EQ(gap.below, 2U);
   EXPECT_NEAR(gap.gap_mm, 5.0, 1e-12);

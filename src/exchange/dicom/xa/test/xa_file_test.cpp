@@ -78,7 +78,7 @@ TEST(XaFile, HoldsPixelsGeometryAndExposure) {
     for (const std::uint8_t gray : frame) ASSERT_EQ(static_cast<std::uint8_t>(pixels[0][place++]), gray);
 }
 
-TEST(XaFile, NamesEveryObjectAnewOrAsGiven) {
+TEST(XaFile, UsesNewOrGivenInstanceUids) {
   const TemporaryFolder folder;
   XaImage image = ramp(1);
   const auto instance = [&] {
@@ -90,7 +90,7 @@ TEST(XaFile, NamesEveryObjectAnewOrAsGiven) {
   EXPECT_EQ(instance(), "1.2.3.4");
 }
 
-TEST(XaFile, RefusesWhatDoesNotAgree) {
+TEST(XaFile, RefusesInconsistentImages) {
   const TemporaryFolder folder;
   const auto is_refused = [&](const XaImage& image) { return !write_xa_file(image, folder / "xa.dcm").has_value(); };
   EXPECT_TRUE(is_refused(XaImage{}));

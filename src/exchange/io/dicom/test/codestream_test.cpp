@@ -50,7 +50,7 @@ TEST(Codestream, GivesTheSizeOfJpegAndJpegLs) {
   }
 }
 
-TEST(Codestream, GivesNothingOfACutOrForeignStream) {
+TEST(Codestream, ReturnsNothingForACutOrForeignStream) {
   for (const std::string& whole : {jpeg2000_start(), jpeg_start('\xc3')})
     for (std::size_t length = 0; length < whole.size(); ++length)
       EXPECT_FALSE(codestream_size(std::string_view(whole).substr(0, length))) << length;

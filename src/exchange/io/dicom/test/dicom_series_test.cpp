@@ -37,7 +37,7 @@ std::string ordering_of(std::vector<DicomSlice> slices) {
   return ordered ? "ordered" : ordered.error().text();
 }
 
-TEST(DicomSeries, OrdersByPositionAndTakesTheStepFromIt) {
+TEST(DicomSeries, OrdersByPositionAndDerivesTheSliceStep) {
   const Mat3 R = (Eigen::AngleAxisd(0.3, Vec3::UnitX()) * Eigen::AngleAxisd(0.5, Vec3::UnitZ())).toRotationMatrix();
   auto slices = series(5, 2.0, 0.0, R);
   std::swap(slices[0], slices[3]);
@@ -72,7 +72,7 @@ TEST(DicomSeries, FillsTheGapOfAMissingSlice) {
   }
 }
 
-TEST(DicomSeries, RefusesAGapThatIsTooWideByName) {
+TEST(DicomSeries, RefusesATooWideGapAndNamesItsSlices) {
   auto slices = series(20, 2.0);
   slices.erase(slices.begin() + 7, slices.begin() + 10);  // 8 mm, four times the usual distance
   EXPECT_NE(ordering_of(slices).find("missing: 8 mm between slice6 and slice10"), std::string::npos)
@@ -102,7 +102,7 @@ TEST(DicomSeries, StraightensGantryTilt) {
   EXPECT_NE(ordering_of(series(10, 2.0, 50.0)).find("50 degrees, more than a gantry tilts"), std::string::npos);
 }
 
-TEST(DicomSeries, RefusesWhatIsNoStackOfGreySlices) {
+TEST(DicomSeries, RefusesNonGreyOrMixedSlices) {
   const auto refused = [](const std::function<void(DicomSlice&)>& change) {
     auto slices = series(5, 2.0);
     change(slices[2]);
@@ -142,7 +142,7 @@ TEST(DicomSeries, RefusesSlicesThatDoNotBelongTogether) {
   EXPECT_NE(error_with([](DicomSlice& s) { s.is_cut = true; }).find("ends before its last pixel"), std::string::npos);
 }
 
-TEST(DicomSeries, RefusesDirectionsThatAreNone) {
+TEST(DicomSeries, RefusesInvalidDirections) {
   auto slices = series(5, 2.0);
   for (DicomSlice& slice : slices) slice.directions_P = {Vec3(1, 0, 0), Vec3(0.2, 1, 0)};
   EXPECT_NE(ordering_of(slices), "ordered");
@@ -170,7 +170,7 @@ double mean_of(const std::filesystem::path& file) {
   return mean;
 }
 
-TEST_P(RealSlice, IsUnpackedInSilence) {
+TEST_P(RealSlice, IsUnpackedWithoutOutput) {
   const auto file = test_data() / "bad-input/dicom" / GetParam();
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real data at " << file;
   ::testing::internal::CaptureStderr();
@@ -191,7 +191,7 @@ TEST(RealSlices, RunLengthAndJpegLsKeepTheSamePixels) {
   EXPECT_NEAR(mean_of(data / "693_J2KI.dcm") / mean_of(data / "pydata_693_UNCR.dcm"), 1.0, 0.01);
 }
 
-TEST(RealSlices, OfThreeComponentsThatClaimOneIsRefused) {
+TEST(RealSlices, RefuseThreeComponentsDeclaredAsOne) {
   const auto file = test_data() / "bad-input/dicom/pydata_US1_J2KR.dcm";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real data at " << file;
   std::string bytes = testing::read_bytes(file);
@@ -227,7 +227,7 @@ class RealSeries : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(RealSeries, OfJpeg2000SlicesIsReadWithItsStep) {
+TEST_F(RealSeries, ReadsJpeg2000SlicesWithTheirStep) {
   const auto ct = read_ct(data_);
   ASSERT_TRUE(ct) << ct.error().text();
   EXPECT_EQ(ct->geometry.size, (std::array<std::int64_t, 3>{512, 512, 20}));
@@ -237,7 +237,7 @@ TEST_F(RealSeries, OfJpeg2000SlicesIsReadWithItsStep) {
   EXPECT_GT(*high, 1000);
 }
 
-TEST_F(RealSeries, AmongOtherFilesIsRead) {
+TEST_F(RealSeries, IsReadAmongOtherFiles) {
   copy(0, 4);
   testing::write_bytes(folder_ / "LICENSE", "Apache License");
   testing::write_bytes(folder_ / "README.txt", std::string(20'000, 'x'));
@@ -247,19 +247,19 @@ TEST_F(RealSeries, AmongOtherFilesIsRead) {
   EXPECT_EQ(ct->geometry.size[2], 4);
 }
 
-TEST_F(RealSeries, GivenByAFolderAboveIsRead) {
+TEST_F(RealSeries, IsReadFromAParentFolder) {
   const auto above = read_ct(data_.parent_path());
   ASSERT_TRUE(above) << above.error().text();
   EXPECT_EQ(above->geometry.size[2], 20);
 }
 
-TEST_F(RealSeries, GivenByOneFileIsRefusedWithAdvice) {
+TEST_F(RealSeries, IsRefusedWithAdviceWhenGivenAsOneFile) {
   const auto one = read_ct(std::filesystem::directory_iterator(data_)->path());
   ASSERT_FALSE(one);
   EXPECT_NE(one.error().advice.find("folder"), std::string::npos) << one.error().text();
 }
 
-TEST_F(RealSeries, WithATruncatedSliceIsRefusedInSilence) {
+TEST_F(RealSeries, IsRefusedWithATruncatedSliceWithoutOutput) {
   copy(0, 3);
   const auto victim = std::filesystem::directory_iterator(folder_.path())->path();
   const std::string whole = testing::read_bytes(victim);

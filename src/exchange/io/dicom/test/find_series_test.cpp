@@ -51,7 +51,7 @@ TEST(FindSeries, OneSeriesBelowSubFoldersIsRead) {
   EXPECT_EQ(ct->geometry.size, (std::array<std::int64_t, 3>{4, 3, 3}));
 }
 
-TEST(FindSeries, OnlyCtVolumeBesideOthersIsTaken) {
+TEST(FindSeries, SelectsTheOnlyCtVolume) {
   const TemporaryFolder folder;
   write_series(folder / "a", "1.2.3", "MR", 3, 10);
   write_series(folder / "b", "1.2.4", "CT", 1, 20);  // a localizer
@@ -59,7 +59,7 @@ TEST(FindSeries, OnlyCtVolumeBesideOthersIsTaken) {
   EXPECT_EQ(first_voxel(read_ct(folder.path())), 30);
 }
 
-TEST(FindSeries, SeveralAreListedAndChosenByNumberOrUid) {
+TEST(FindSeries, ListsSeveralAndSelectsByNumberOrUid) {
   const TemporaryFolder folder;
   write_series(folder / "a", "1.2.3", "CT", 3, 10);
   write_series(folder / "b/deep", "1.2.4", "CT", 2, 20);
@@ -81,7 +81,7 @@ TEST(FindSeries, SeveralAreListedAndChosenByNumberOrUid) {
   }
 }
 
-TEST(FindSeries, OneSeriesInTwoFoldersIsOne) {
+TEST(FindSeries, MergesOneSeriesInTwoFolders) {
   const TemporaryFolder folder;
   write_flat_slice(folder / "a/1", "1.2.3", "CT", 0, 10);
   write_flat_slice(folder / "b/2", "1.2.3", "CT", 1, 10);

@@ -142,7 +142,7 @@ Numbers unpack_by_gdcm(const std::string& stream, int bits) {
   return numbers;
 }
 
-TEST(LosslessJpeg, OfAllPredictorsIsUnpackedAsByGdcm) {
+TEST(LosslessJpeg, UnpacksAllPredictorsLikeGdcm) {
   for (const int bits : {16, 12, 10})
     for (int predictor = 1; predictor <= 7; ++predictor)
       for (const int restart_rows : {0, 1, 3}) {
@@ -153,7 +153,7 @@ TEST(LosslessJpeg, OfAllPredictorsIsUnpackedAsByGdcm) {
       }
 }
 
-TEST(LosslessJpeg, MayHaveRemarksButNoBytesBetweenItsSegments) {
+TEST(LosslessJpeg, AllowsCommentsButNoStrayBytesBetweenSegments) {
   const Numbers numbers = some_numbers(12);
   const std::string remarks = segment(0xe0, std::string("JFIF\0\1\2\0\0\1\0\1\0\0", 14)) + segment(0xfe, "a comment");
   EXPECT_EQ(unpack_lossless(pack_lossless(numbers, {12, 4, 0, remarks})), numbers);
@@ -164,7 +164,7 @@ TEST(LosslessJpeg, MayHaveRemarksButNoBytesBetweenItsSegments) {
   EXPECT_TRUE(unpack_lossless(pack_lossless(numbers, {12, 8, 0, {}})).empty());
 }
 
-TEST(LosslessJpeg, ThatEndsEarlyOrGoesOnIsRefused) {
+TEST(LosslessJpeg, RefusesATruncatedOrTooLongStream) {
   const Numbers numbers = some_numbers(12);
   for (const int restart_rows : {0, 3}) {
     const std::string whole = pack_lossless(numbers, {12, 1, restart_rows, {}});
@@ -182,7 +182,7 @@ TEST(LosslessJpeg, ThatEndsEarlyOrGoesOnIsRefused) {
   EXPECT_TRUE(unpack_lossless(restarts.erase(at, 2)).empty());
 }
 
-TEST(LosslessJpeg, WithACodeThatNoTableHasIsRefused) {
+TEST(LosslessJpeg, RefusesACodeOutsideTheTable) {
   std::string stream = pack_lossless(some_numbers(12), {12, 1, 0, {}});
   const std::size_t coded = stream.find("\xff\xda") + 10;
   ASSERT_EQ(unpack_lossless(stream).size(), static_cast<std::size_t>(kWide * kHigh));
@@ -203,7 +203,7 @@ std::string small_baseline(const std::string& remark, const std::string& between
          segment(0xc4, codes + '\0') + segment(0xda, std::string{1, 1, 0, 0, 63, 0}) + "\x3f\xff\xd9";
 }
 
-TEST(PlainJpeg, KeepsWhatDecodesAndDropsRemarks) {
+TEST(PlainJpeg, KeepsTheImageAndDropsComments) {
   const auto text_of = [](const std::string& stream) {
     const auto plain = plain_jpeg(stream);
     return plain ? std::string(plain->begin(), plain->end()) : std::string("refused");

@@ -93,7 +93,7 @@ struct Case {
 
 class PixelUnpacking : public ::testing::TestWithParam<Case> {};
 
-TEST_P(PixelUnpacking, GivesTheNumbersBack) {
+TEST_P(PixelUnpacking, RoundTripsNumbers) {
   const auto [syntax, bits, is_signed] = GetParam();
   const auto numbers = all_of(bits, is_signed);
   const PixelLayout layout = layout_of_bits(bits, is_signed);
@@ -148,14 +148,14 @@ TEST(PixelUnpackingOf, BitsBelowTheStoredOnesAreDropped) {
   EXPECT_EQ(*unpacked, numbers);
 }
 
-TEST(PixelUnpackingOf, SignedJpeg2000InAnUnsignedImageIsRefused) {
+TEST(PixelUnpackingOf, RefusesSignedJpeg2000InAnUnsignedImage) {
   const auto pieces = pack(bytes_of(all_of(12, true)), 12, true, kJpeg2000Syntax);
   const auto unpacked = unpack(pieces, layout_of_bits(12, false), kJpeg2000Syntax);
   ASSERT_FALSE(unpacked);
   EXPECT_NE(unpacked.error().what.find("PixelRepresentation"), std::string::npos) << unpacked.error().text();
 }
 
-TEST(PixelUnpackingOf, AStreamOfMoreBitsThanTheImageHasIsRefused) {
+TEST(PixelUnpackingOf, RefusesAStreamWithMoreBitsThanTheImage) {
   for (const char* syntax : {kJpegLosslessSyntax, kJpegLsSyntax, kJpeg2000Syntax}) {
     auto pieces = pack(bytes_of(all_of(16, false)), 16, false, syntax);
     ASSERT_FALSE(pieces.empty());
@@ -172,7 +172,7 @@ TEST(PixelUnpackingOf, AStreamOfMoreBitsThanTheImageHasIsRefused) {
   }
 }
 
-TEST(PixelUnpackingOf, ASignThatTheStreamCannotHoldIsRefused) {
+TEST(PixelUnpackingOf, RefusesASignThatTheStreamCannotHold) {
   // The frame header of JPEG-LS: 12 bits, 8 rows, 16 columns, one component.
   const std::string stream("\xff\xd8\xff\xf7\x00\x0b\x0c\x00\x08\x00\x10\x01\x01\x11\x00", 15);
   const auto unpacked = unpack({stream}, layout_of_bits(16, true), kJpegLsSyntax);

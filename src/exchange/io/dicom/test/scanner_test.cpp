@@ -61,7 +61,7 @@ TEST(Scanner, GantryTiltIsStraightenedWithAWarning) {
   EXPECT_EQ(scan->slices_P.size(), 6U);
 }
 
-TEST(Scanner, UnevenStepsBecomeEvenWithAWarning) {
+TEST(Scanner, ResamplesUnevenStepsWithAWarning) {
   const TemporaryFolder folder;
   write_slices(folder.path(), {}, origins_at({0, 2.5, 5, 7.5, 12.5, 17.5, 22.5}), linear_hu);
   const auto scan = read_ct_scan(folder.path());
@@ -98,7 +98,7 @@ TEST(Scanner, ThickObliqueAndLargeSlicesAreRead) {
   EXPECT_EQ(large->grid.geometry.size, (std::array<std::int64_t, 3>{1024, 1024, 3}));
 }
 
-TEST(Scanner, OverviewsOfOneFolderAreLeftOut) {
+TEST(Scanner, SkipsLocalizersInTheFolder) {
   const TemporaryFolder folder;
   write_slices(folder.path(), {}, origins_at({0, 2, 4, 6, 8, 10, 12, 14}), linear_hu);
   CtSeries scout;
@@ -129,7 +129,7 @@ TEST(Scanner, OverviewsOfOneFolderAreLeftOut) {
   EXPECT_NE(unmarked->warnings[0].find("another direction: 2"), std::string::npos) << unmarked->warnings[0];
 }
 
-TEST(Scanner, CopiesOfSlicesAreLeftOutButNoOtherSliceOfThePlace) {
+TEST(Scanner, SkipsOnlyIdenticalCopiesOfASlice) {
   const TemporaryFolder folder;
   const auto origins_P = origins_at({0, 2, 4, 6});
   write_slices(folder.path(), {}, origins_P, linear_hu);

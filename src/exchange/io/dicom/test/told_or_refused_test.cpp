@@ -37,7 +37,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(DicomNumbers, ThatAreNotDecimalAreRefusedWithTheirText) {
+TEST(DicomNumbers, RefuseNonDecimalText) {
   for (const std::string text : {"4,8\\4,8", "4.8mm\\4.8mm", "4.8\\4.8\\4.8", "4.8", "4.8\\x", "\\4.8"}) {
     const TemporaryFolder folder;
     CtSeries series;
@@ -56,7 +56,7 @@ TEST(DicomNumbers, ThatAreNotDecimalAreRefusedWithTheirText) {
   }
 }
 
-TEST(DicomNumbers, OfTheScalingAreReadAsAWholeToo) {
+TEST(DicomNumbers, OfTheRescaleAreParsedCompletely) {
   for (const std::string text : {"-1024,0", "-1024\\0", "1 024"}) {
     const TemporaryFolder folder;
     CtSeries series;
@@ -66,7 +66,7 @@ TEST(DicomNumbers, OfTheScalingAreReadAsAWholeToo) {
   }
 }
 
-TEST(DicomScaling, OfSomeSlicesOnlyIsRefused) {
+TEST(DicomScaling, IsRefusedIfSomeSlicesLackIt) {
   for (const std::string other : {"", " "}) {
     const TemporaryFolder folder;
     CtSeries series;
@@ -104,7 +104,7 @@ TEST(LostSlices, AreRefusedByTheirNames) {
   }
 }
 
-TEST(Acquisitions, InBlocksAreReadAndMixedOnesRefused) {
+TEST(Acquisitions, AreReadInBlocksButRefusedWhenInterleaved) {
   const auto outcome = [](const std::vector<std::string>& numbers) {
     const TemporaryFolder folder;
     for (std::size_t n = 0; n < numbers.size(); ++n) {
@@ -123,7 +123,7 @@ TEST(Acquisitions, InBlocksAreReadAndMixedOnesRefused) {
   EXPECT_TRUE(has(outcome({"1", "1", "2", "2", "1", "1", "2", "2"}), "alternate 3 times"));
 }
 
-TEST(Acquisitions, WithoutNumbersAreToldByTheirPixels) {
+TEST(Acquisitions, WithoutNumbersAreDistinguishedByPixels) {
   const auto outcome = [](double other_shift_mm, double noise_hu) {
     const TemporaryFolder folder;
     std::uint32_t random = 1;
@@ -144,7 +144,7 @@ TEST(Acquisitions, WithoutNumbersAreToldByTheirPixels) {
   EXPECT_TRUE(has(outcome(-5.0, 40.0), "resembles the next but one")) << outcome(-5.0, 40.0);
 }
 
-TEST(Copies, OfOneInstanceWithOtherPixelsAreRefusedWhateverTheirNames) {
+TEST(Copies, OfOneInstanceWithDifferentPixelsAreRefused) {
   for (const char* name : {"a", "z"}) {
     const TemporaryFolder folder;
     write_slices(folder.path(), {}, heights(5), body_hu);
@@ -154,7 +154,7 @@ TEST(Copies, OfOneInstanceWithOtherPixelsAreRefusedWhateverTheirNames) {
   }
 }
 
-TEST(Captures, AmongSlicesAreLeftOut) {
+TEST(Captures, AreSkippedAmongSlices) {
   const TemporaryFolder folder;
   write_slices(folder.path(), {}, heights(5), body_hu);
   CtSeries capture;
@@ -186,7 +186,7 @@ struct PaddedCt {
   }
 };
 
-TEST(Padding, IsAirAndToldWhereItWouldBeTissue) {
+TEST(Padding, IsAirWithAWarningIfItWouldBeTissue) {
   const auto voxels = [](const PaddedCt& padded) {
     const auto scan = padded.read();
     EXPECT_TRUE(scan) << scan.error().text();

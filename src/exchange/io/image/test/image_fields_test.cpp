@@ -8,7 +8,7 @@ using testing::numbered_grid;
 using testing::oblique_geometry;
 using testing::read_bytes;
 
-TEST(ImageFields, ComeBackFromNrrd) {
+TEST(ImageFields, RoundTripThroughNrrd) {
   const TemporaryFolder folder;
   const volume::LabelGrid grid = numbered_grid<std::uint8_t>(oblique_geometry());
   const ImageFields fields{{"trocar.fan.radius_mm", "40.5"}, {"trocar_axis", "+z; a = b: c"}, {"empty", ""}};
@@ -26,7 +26,7 @@ TEST(ImageFields, ComeBackFromNrrd) {
   EXPECT_TRUE(image->geometry.matches(grid.geometry));
 }
 
-TEST(ImageFields, AreEmptyWithoutAny) {
+TEST(ImageFields, AreEmptyIfAbsent) {
   const TemporaryFolder folder;
   const volume::LabelGrid grid = numbered_grid<std::uint8_t>(oblique_geometry());
   for (const char* name : {"a.nrrd", "a.nii.gz", "a.mha"}) {
@@ -38,7 +38,7 @@ TEST(ImageFields, AreEmptyWithoutAny) {
   EXPECT_FALSE(read_image_fields(folder / "none.nrrd"));
 }
 
-TEST(ImageFields, RefuseWhatAHeaderCannotHold) {
+TEST(ImageFields, RefuseUnrepresentableEntries) {
   const TemporaryFolder folder;
   const volume::LabelGrid grid = numbered_grid<std::uint8_t>(oblique_geometry());
   EXPECT_FALSE(write_image(grid, folder / "a.nii.gz", {{"key", "value"}}));

@@ -50,7 +50,7 @@ TEST_P(EveryFormat, KeepsLabels) {
   EXPECT_TRUE(read->geometry.matches(labels.geometry));
 }
 
-TEST_P(EveryFormat, KeepsGrayLevelsAndItsNameWithoutEnding) {
+TEST_P(EveryFormat, KeepsGrayLevelsAndItsBaseName) {
   const volume::LabelGrid gray = numbered_grid<std::uint8_t>(oblique_geometry());
   const auto path = folder_ / (std::string("sweep.1") + GetParam());
   ASSERT_TRUE(write_image(gray, path));
@@ -85,7 +85,7 @@ TEST_P(EveryFormat, RefusesEveryTruncation) {
   EXPECT_FALSE(read_ct(folder_ / ("cut" + name)));
 }
 
-TEST_P(EveryFormat, SaysNothingOnTheTerminal) {
+TEST_P(EveryFormat, WritesNothingToTheTerminal) {
   const volume::CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
   const std::string name = std::string("ct") + GetParam();
   ASSERT_TRUE(write_image(ct, folder_ / name));
@@ -100,7 +100,7 @@ TEST_P(EveryFormat, SaysNothingOnTheTerminal) {
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
 }
 
-TEST_P(EveryFormat, SurvivesDamagedHeadersInSilence) {
+TEST_P(EveryFormat, SurvivesDamagedHeadersWithoutOutput) {
   const volume::CtGrid ct = numbered_grid<std::int16_t>(oblique_geometry());
   const std::string name = std::string("ct") + GetParam();
   ASSERT_TRUE(write_image(ct, folder_ / name));
@@ -161,7 +161,7 @@ TEST(ImageFile, ReadsRasNrrd) {
   EXPECT_EQ((*ct)[(volume::Index3{std::lround(index[0]), std::lround(index[1]), std::lround(index[2])})], 8);
 }
 
-TEST(ImageFile, ReadsHeaderWithVoxelsBeside) {
+TEST(ImageFile, ReadsADetachedHeader) {
   TemporaryFolder folder;
   write_bytes(folder / "ct.mhd",
               "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
@@ -179,7 +179,7 @@ TEST(ImageFile, ReadsHeaderWithVoxelsBeside) {
   EXPECT_LT((ct->geometry.to_mm({1, 1, 1}) - Vec3(3, 5, 7)).norm(), 1e-12);
 }
 
-TEST(ImageFile, NamesWhatIsNoImage) {
+TEST(ImageFile, ErrorNamesANonImageFile) {
   TemporaryFolder folder;
   write_bytes(folder / "notes.txt", "hello");
   write_bytes(folder / "fake.nii.gz", "hello");

@@ -80,7 +80,7 @@ TEST(Nifti, ReadsBigEndian) {
   EXPECT_EQ(ct->voxels, numbers(12));
 }
 
-TEST(Nifti, ClampsPaddingAndRefusesWhatIsNoHu) {
+TEST(Nifti, ClampsPaddingAndRefusesNonFiniteHu) {
   TemporaryFolder folder;
   std::vector<float> values(12, 40.0F);
   values[1] = -100'000.0F;
@@ -118,7 +118,7 @@ TEST(Nifti, RefusesIntensitiesAsLabels) {
   }
 }
 
-TEST(Nifti, RoundsGrayLevelsAndSaysSo) {
+TEST(Nifti, RoundsGrayLevelsWithAWarning) {
   TemporaryFolder folder;
   std::vector<float> values(12, 100.4F);
   values[3] = 254.6F;
@@ -137,7 +137,7 @@ TEST(Nifti, RoundsGrayLevelsAndSaysSo) {
   EXPECT_NE(shares.error().text().find("multiply it by 255"), std::string::npos) << shares.error().text();
 }
 
-TEST(Nifti, RefusesAPlaceInDoubt) {
+TEST(Nifti, RefusesAnUnknownOrientation) {
   TemporaryFolder folder;
   HandMadeNifti nowhere = small_nifti(kNiftiInt16, numbers(12));
   nowhere.put<std::int16_t>(254, 0);
@@ -174,7 +174,7 @@ TEST(Nifti, RefusesShearedGrid) {
   EXPECT_NE(ct.error().what.find("sheared"), std::string::npos) << ct.error().text();
 }
 
-TEST(Nifti, RefusesSizesThatCannotBe) {
+TEST(Nifti, RefusesImpossibleSizes) {
   TemporaryFolder folder;
   struct Case {
     std::initializer_list<int> sizes;
@@ -215,7 +215,7 @@ TEST(Nifti, WritesNiftiInRas) {
   for (std::size_t n = 0; n < expected.size(); ++n) EXPECT_FLOAT_EQ(sform[n], expected[n]) << n;
 }
 
-TEST(Nifti, TheHeaderOfAPairIsNamed) {
+TEST(Nifti, ErrorNamesTheHeaderOfAPair) {
   const TemporaryFolder folder;
   HandMadeNifti nifti = small_nifti(kNiftiInt16, numbers(12));
   std::memcpy(nifti.bytes.data() + 344, "ni1", 4);
@@ -238,7 +238,7 @@ TEST(Nifti, VoxelsOfImpossibleSizeAreRefused) {
   }
 }
 
-TEST(Nifti, InfinityIsCalledInfinity) {
+TEST(Nifti, ErrorNamesInfinity) {
   const TemporaryFolder folder;
   const auto error_with = [&](float value) {
     std::vector<float> voxels(12, 5.0F);

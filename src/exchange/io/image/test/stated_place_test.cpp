@@ -65,7 +65,7 @@ HandMadeNifti with_qform(float x_mm) {
   return nifti;
 }
 
-TEST_F(StatedPlaceTest, TheSformCountsAndTheQformIsCompared) {
+TEST_F(StatedPlaceTest, UsesTheSformAndComparesTheQform) {
   expect_at("a.nii", with_qform(0.0F).bytes, 8, {-14, -20, 34});
   EXPECT_TRUE(warnings_.empty());
   expect_at("a.nii", with_qform(40.0F).bytes, 8, {-14, -20, 34});
@@ -73,7 +73,7 @@ TEST_F(StatedPlaceTest, TheSformCountsAndTheQformIsCompared) {
   EXPECT_EQ(warnings_[0], "a.nii: sform and qform differ by 40 mm; the sform is used, as by TotalSegmentator");
 }
 
-TEST_F(StatedPlaceTest, AQuaternionTurnsTheGrid) {
+TEST_F(StatedPlaceTest, AppliesTheQuaternion) {
   HandMadeNifti nifti = with_qform(0.0F);
   nifti.put<std::int16_t>(254, 0);
   // 90 degrees about z: i runs to anterior, j to left.
@@ -94,7 +94,7 @@ TEST_F(StatedPlaceTest, TwoSizesOfAVoxelAreRefused) {
   expect_at("a.nii", unstated.bytes, 8, {-14, -20, 34});
 }
 
-TEST_F(StatedPlaceTest, NumbersOfANiftiHeaderAreFinite) {
+TEST_F(StatedPlaceTest, RefusesNonFiniteNiftiHeaderNumbers) {
   for (const float bad : {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
     for (std::size_t n = 0; n < 12; ++n) {
       HandMadeNifti nifti = plain_nifti();
@@ -122,7 +122,7 @@ TEST_F(StatedPlaceTest, ASlopeOfZeroMeansNoScaling) {
   EXPECT_EQ(ct->voxels, numbers(12));
 }
 
-TEST_F(StatedPlaceTest, ASmallShearIsRoundingAndALargeOneIsNamed) {
+TEST_F(StatedPlaceTest, ToleratesASmallShearAndRefusesALargeOne) {
   HandMadeNifti nifti = plain_nifti();
   nifti.put_sform({2, 3 * 3e-4F, 0, 10, 0, 3, 0, 20, 0, 0, 4, 30});
   expect_at("a.nii", nifti.bytes, 0, {-10, -20, 30});
@@ -147,7 +147,7 @@ TEST_F(StatedPlaceTest, ReadsNifti2) {
   expect_at("a.nii", nifti.bytes, 8, {-14, -20, 34});
 }
 
-TEST_F(StatedPlaceTest, ItkReadsTheSamePlaceAndVoxelsFromAnObliqueNifti) {
+TEST_F(StatedPlaceTest, MatchesItkForAnObliqueNifti) {
   const volume::CtGrid ct = testing::numbered_grid<std::int16_t>(testing::oblique_geometry());
   ASSERT_TRUE(write_image(ct, folder_ / "a.nii.gz"));
   const auto ours = detail::read_volume_file(folder_ / "a.nii.gz");
@@ -183,7 +183,7 @@ std::string nrrd_in(const std::string& space) {
   return nrrd("space: " + space + "\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\n");
 }
 
-TEST_F(StatedPlaceTest, ReadsTheSpacesThatNameTheBody) {
+TEST_F(StatedPlaceTest, ReadsAnatomicalSpaces) {
   expect_at("a.nrrd", nrrd_in("left-posterior-superior"), 8, {14, 20, 34});
   expect_at("a.nrrd", nrrd_in("LPS"), 8, {14, 20, 34});
   expect_at("a.nrrd", nrrd_in("right-anterior-superior"), 8, {-14, -20, 34});
@@ -192,7 +192,7 @@ TEST_F(StatedPlaceTest, ReadsTheSpacesThatNameTheBody) {
   expect_at("a.nrrd", nrrd_in("LAS"), 8, {14, -20, 34});
 }
 
-TEST_F(StatedPlaceTest, RefusesSpacesThatDoNot) {
+TEST_F(StatedPlaceTest, RefusesNonAnatomicalSpaces) {
   for (const char* space :
        {"3D-left-handed", "3D-right-handed", "scanner-xyz", "scanner-xyz-time", "LPST", "elsewhere"})
     expect_refused("a.nrrd", nrrd_in(space), fmt::format("space \"{}\" does not say", space));
@@ -203,7 +203,7 @@ TEST_F(StatedPlaceTest, RefusesSpacesThatDoNot) {
   expect_refused("a.nrrd", nrrd("space:=LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\n"), "no field \"space\"");
 }
 
-TEST_F(StatedPlaceTest, RefusesWhatIsNotInMillimetres) {
+TEST_F(StatedPlaceTest, RefusesUnitsOtherThanMillimetres) {
   const std::string place = "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\n";
   expect_at("a.nrrd", nrrd(place, "space units: \"mm\" \"mm\" \"mm\"\n"), 8, {14, 20, 34});
   expect_at("a.nrrd", nrrd(place, "space units: \"\" \"\" \"\"\n"), 8, {14, 20, 34});
@@ -211,7 +211,7 @@ TEST_F(StatedPlaceTest, RefusesWhatIsNotInMillimetres) {
     expect_refused("a.nrrd", nrrd(place, fmt::format("space units: \"mm\" \"{}\" \"mm\"\n", unit)), "not mm");
 }
 
-TEST_F(StatedPlaceTest, RefusesDirectionsThatAreNone) {
+TEST_F(StatedPlaceTest, RefusesInvalidDirections) {
   for (const char* directions :
        {"(2,0,0) (0,3,0)", "(2,0,0) (0,3,0) none", "(2,0,0) (0,3,0) (0,0,nan)", "(2,0,0) (0,3,0) (0,0,inf)",
         "(2,0,0) (0,3,0) (0,0,4) (1,1,1)", "2,0,0 0,3,0 0,0,4", "(2,0) (0,3) (0,4)"})
@@ -222,7 +222,7 @@ TEST_F(StatedPlaceTest, RefusesDirectionsThatAreNone) {
                  "without extent");
 }
 
-TEST_F(StatedPlaceTest, BoundsATextHeader) {
+TEST_F(StatedPlaceTest, LimitsTheSizeOfATextHeader) {
   const std::string place = "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\n";
   expect_refused("a.nrrd", nrrd(place, "comment: " + std::string(3'000, 'A') + "\n"), "a field of 3009 characters");
   expect_refused("a.nrrd", nrrd(place, "content: " + std::string(600, 'A') + "\n"), "a field of 609 characters");
@@ -271,7 +271,7 @@ TEST_F(StatedPlaceTest, ReadsTheRowsOfTheTransformMatrixAsAxes) {
             {10, 24, 34});
 }
 
-TEST_F(StatedPlaceTest, RefusesAMetaImageWhosePlaceIsInDoubt) {
+TEST_F(StatedPlaceTest, RefusesAMetaImageWithContradictoryPosition) {
   expect_at("a.mha", meta(kMetaPlace, "AnatomicalOrientation = RAI\nDistanceUnits = mm\n"), 8, {14, 20, 34});
   expect_at("a.mha", meta(kMetaPlace, "AnatomicalOrientation = ???\n"), 8, {14, 20, 34});
   for (const char* letters : {"LAI", "RPI", "RAS", "LPS", "IAR"})
@@ -289,7 +289,7 @@ TEST_F(StatedPlaceTest, RefusesAMetaImageWhosePlaceIsInDoubt) {
                  "3 finite numbers");
 }
 
-TEST_F(StatedPlaceTest, RefusesAMetaImageThatMisleadsItsLibrary) {
+TEST_F(StatedPlaceTest, RefusesAMetaImageThatItkMisreads) {
   for (const char* dimensions : {"-3", "0", "2", "4", "3.5", "x"}) {
     std::string bytes = meta(kMetaPlace);
     bytes.replace(bytes.find("NDims = 3"), 9, fmt::format("NDims = {}", dimensions));

@@ -75,7 +75,7 @@ class DicomLabels : public ::testing::Test {
   std::vector<std::string> warnings_;
 };
 
-TEST_F(DicomLabels, SegmentsTakeTheirNamesFromTheFileTheMapOrTheirType) {
+TEST_F(DicomLabels, NameSegmentsByFileMapOrType) {
   testing::write_dicom(folder_ / "label.seg", testing::seg_elements(two_segments("Liver", "my tumour")));
   EXPECT_EQ(read(folder_ / "label.seg"), (Voxels{{"Liver", 60}, {"my tumour", 12}}));
   EXPECT_EQ(read(folder_ / "label.seg", map_file("[labels]\n\"my tumour\" = \"liver_tumor\"\n")),
@@ -98,7 +98,7 @@ TEST_F(DicomLabels, SegmentsTakeTheirNamesFromTheFileTheMapOrTheirType) {
   EXPECT_EQ(read(folder_ / "typed.dcm"), (Voxels{{"liver", 60}, {"kidney_right", 12}}));
 }
 
-TEST_F(DicomLabels, ASingleSegmentWithoutANameIsNamedAfterItsFile) {
+TEST_F(DicomLabels, NameASingleUnnamedSegmentAfterItsFile) {
   TestSeg seg = two_segments("Segment_1", "x");
   seg.segments.pop_back();
   seg.frames.pop_back();
@@ -106,7 +106,7 @@ TEST_F(DicomLabels, ASingleSegmentWithoutANameIsNamedAfterItsFile) {
   EXPECT_EQ(read(folder_ / "liver.dcm"), (Voxels{{"liver", 60}}));
 }
 
-TEST_F(DicomLabels, SidesOfStructureSetsMayBeShort) {
+TEST_F(DicomLabels, AcceptAbbreviatedSidesInStructureSets) {
   const auto square = [](double x) {
     return std::vector<Vec3>{{x, -0.5, 2}, {x + 2, -0.5, 2}, {x + 2, 5.5, 2}, {x, 5.5, 2}};
   };
@@ -117,7 +117,7 @@ TEST_F(DicomLabels, SidesOfStructureSetsMayBeShort) {
   EXPECT_EQ(read(folder_ / "rs.dcm"), (Voxels{{"kidney_left", 12}, {"lung_right", 12}, {"SpinalCord", 12}}));
 }
 
-TEST_F(DicomLabels, OfASiblingSeriesAreReadOnRequest) {
+TEST_F(DicomLabels, ReadASiblingSeriesOnRequest) {
   TestSeg seg = two_segments("Liver", "Spleen");
   seg.series_uid = "1.2.4";
   testing::write_dicom(folder_ / "label.seg", testing::seg_elements(seg));
@@ -128,13 +128,13 @@ TEST_F(DicomLabels, OfASiblingSeriesAreReadOnRequest) {
   EXPECT_NE(warnings_[0].find("label.seg: was drawn on the series 1.2.4"), std::string::npos) << warnings_[0];
 }
 
-TEST_F(DicomLabels, OfAFolderAreFoundBesideTheCt) {
+TEST_F(DicomLabels, AreFoundInTheFolderOfTheCt) {
   testing::write_dicom(folder_ / "ct/../study/seg/1", testing::seg_elements(two_segments("Liver", "Spleen")));
   fs::rename(folder_ / "ct", folder_ / "study/ct");
   EXPECT_EQ(read(folder_ / "study"), (Voxels{{"Liver", 60}, {"Spleen", 12}}));
 }
 
-TEST_F(DicomLabels, SeriesThatTheyReferToIsChosen) {
+TEST_F(DicomLabels, SelectTheReferencedSeries) {
   testing::CtSeries other;
   other.series_uid = "1.2.5";
   testing::write_slices(folder_ / "other", other, {{0, 0, 0}, {0, 0, 2}}, [](const Vec3&) { return 40.0; });
@@ -145,7 +145,7 @@ TEST_F(DicomLabels, SeriesThatTheyReferToIsChosen) {
   EXPECT_EQ(scan->series_uid, "1.2.3");
 }
 
-TEST_F(DicomLabels, SeriesThatTheyReferToIsNoVolume) {
+TEST_F(DicomLabels, ReportAReferencedSeriesThatIsNotAVolume) {
   const auto error_of = [&](const std::string& series, const fs::path& ct) {
     TestSeg seg = two_segments("Liver", "Spleen");
     seg.series_uid = series;
@@ -256,13 +256,13 @@ class RealSegmentation : public ::testing::Test {
   fs::path data_ = test_data() / "dicom-seg/data/segmentations";
 };
 
-TEST_F(RealSegmentation, IsTheMaskThatItWasMadeFrom) {
+TEST_F(RealSegmentation, MatchesItsSourceMask) {
   expect_same(data_ / "ct-3slice", data_ / "liver.dcm", {{"Liver", "liver_seg.nrrd", 1}});
   expect_same(data_ / "23x38x3/image", data_ / "23x38x3/seg/label.seg", {{"Liver", "23x38x3/nrrd/label.nrrd", 1}});
   expect_same(data_ / "24x38x3/image", data_ / "24x38x3/seg/label.seg", {{"Liver", "24x38x3/nrrd/label.nrrd", 1}});
 }
 
-TEST_F(RealSegmentation, OfOverlappingSegmentsKeepsEachWhole) {
+TEST_F(RealSegmentation, KeepsOverlappingSegmentsComplete) {
   // DARK_BLUE and ORANGE are no names, but their types are: vein, artery.
   expect_same(data_ / "ct-3slice", data_ / "partial_overlaps.dcm",
               {{"GREEN", "partial_overlaps-1.nrrd", 1},
@@ -272,14 +272,14 @@ TEST_F(RealSegmentation, OfOverlappingSegmentsKeepsEachWhole) {
                {"PURPLE", "partial_overlaps-3.nrrd", 3}});
 }
 
-TEST_F(RealSegmentation, AsLabelMapIsRead) {
+TEST_F(RealSegmentation, ReadsALabelMap) {
   expect_same(data_ / "24x38x3/image", data_ / "sparse-labelmap-noppv.dcm",
               {{"Liver", "sparse_labelmap_noppv_seg.nrrd", 1}});
   expect_same(data_ / "24x38x3/image", data_ / "sparse-labelmap-ppv5.dcm",
               {{"Liver", "sparse_labelmap_ppv5_seg.nrrd", 1}});
 }
 
-TEST_F(RealSegmentation, OfAnotherSeriesIsRefused) {
+TEST_F(RealSegmentation, RefusesAnotherSeries) {
   const auto scan = read_ct_scan(data_ / "24x38x3/image");
   ASSERT_TRUE(scan) << scan.error().text();
   std::vector<std::string> warnings;
@@ -288,7 +288,7 @@ TEST_F(RealSegmentation, OfAnotherSeriesIsRefused) {
   EXPECT_NE(sources.error().what.find("another series"), std::string::npos) << sources.error().text();
 }
 
-TEST(RealCompressedSegmentation, IsTheUncompressedOne) {
+TEST(RealCompressedSegmentation, MatchesTheUncompressedOne) {
   const fs::path data = test_data() / "bad-input/dicom";
   if (!fs::exists(data)) GTEST_SKIP() << "no real data at " << data;
   const auto read = [&](const char* file) {

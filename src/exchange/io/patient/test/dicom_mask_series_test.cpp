@@ -34,7 +34,7 @@ class MaskSeries : public ::testing::Test {
   }
 };
 
-TEST_F(MaskSeries, OfAnotherPatientOrFrameOfReferenceAreRefused) {
+TEST_F(MaskSeries, OfAnotherPatientOrFrameIsRefused) {
   CtSeries mask;
   mask.series_uid = "1.2.77";
   EXPECT_EQ(outcome(mask), "48 voxels");
@@ -50,7 +50,7 @@ TEST_F(MaskSeries, OfAnotherPatientOrFrameOfReferenceAreRefused) {
   EXPECT_EQ(outcome(mask), "48 voxels");
 }
 
-TEST_F(MaskSeries, CountByTheirStoredNumbers) {
+TEST_F(MaskSeries, UseStoredValues) {
   CtSeries mask;
   mask.intercept = "-1024";
   EXPECT_EQ(outcome(mask), "48 voxels");

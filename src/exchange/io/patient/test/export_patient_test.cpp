@@ -72,7 +72,7 @@ void expect_same(const anatomy::VirtualPatient& patient, const fs::path& ct_path
   for (std::size_t n = 0; n < skin.size(); ++n) EXPECT_EQ(skin[n], n >= 20 && n < 90) << n;
 }
 
-TEST(ExportPatient, NiftiComesBack) {
+TEST(ExportPatient, RoundTripsThroughNifti) {
   const TemporaryFolder folder;
   const anatomy::VirtualPatient patient = numbered_patient();
   const Status exported = export_patient(patient, ExportKind::kNifti, folder / "out");
@@ -82,7 +82,7 @@ TEST(ExportPatient, NiftiComesBack) {
   expect_same(patient, folder / "out/ct.nii.gz", {folder / "out/segmentations"});
 }
 
-TEST(ExportPatient, DicomComesBack) {
+TEST(ExportPatient, RoundTripsThroughDicom) {
   const TemporaryFolder folder;
   const anatomy::VirtualPatient patient = numbered_patient();
   const Status exported = export_patient(patient, ExportKind::kDicom, folder / "out");

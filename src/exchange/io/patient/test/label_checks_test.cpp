@@ -76,7 +76,7 @@ class LabelChecks : public ::testing::Test {
   std::vector<std::string> warnings_;
 };
 
-TEST_F(LabelChecks, EmptyStructuresAreTold) {
+TEST_F(LabelChecks, WarnOfEmptyStructures) {
   EXPECT_EQ(read_slicer(slicer_file({{"liver", ""}, {"spleen", ""}, {"my roi", ""}}, {1, 2})), (Names{"liver"}));
   ASSERT_EQ(warnings_.size(), 2U) << told();
   EXPECT_TRUE(is_told("a.seg.nrrd: the structure \"spleen\" is empty")) << told();
@@ -115,7 +115,7 @@ TEST_F(LabelChecks, BlankLabelsAreRefused) {
   EXPECT_EQ(refused(read(folder_ / "rs.dcm")), "");
 }
 
-TEST_F(LabelChecks, ABlankFileBesideAnotherIsLeftOut) {
+TEST_F(LabelChecks, SkipABlankFileBesideAnother) {
   volume::LabelGrid labels(ct_.grid);
   ASSERT_TRUE(write_image(labels, folder_ / "seg.nii.gz"));
   labels.voxels[0] = 1;
@@ -126,7 +126,7 @@ TEST_F(LabelChecks, ABlankFileBesideAnotherIsLeftOut) {
   EXPECT_TRUE(is_told("1 of 2 structures are empty masks and were left out: seg")) << told();
 }
 
-TEST_F(LabelChecks, EmptyMasksOfAFolderAreToldInOneLine) {
+TEST_F(LabelChecks, ListEmptyMasksOfAFolderInOneLine) {
   volume::LabelGrid labels(ct_.grid);
   ASSERT_TRUE(write_image(labels, folder_ / "spleen.nii.gz"));
   ASSERT_TRUE(write_image(labels, folder_ / "aorta.nii.gz"));
@@ -148,7 +148,7 @@ TEST_F(LabelChecks, VoxelsBeyondTheCtAreCounted) {
   EXPECT_NE(beyond[0].find("all empty on the CT"), std::string::npos) << beyond[0];
 }
 
-TEST_F(LabelChecks, OtherVoxelsThanTheCtsKeepTheVolume) {
+TEST_F(LabelChecks, KeepTheVolumeAcrossVoxelSizes) {
   // 20 planes of 0.5 mm are 10 x 10 x 10 mm; a single plane lies between voxels of the CT.
   std::vector<std::pair<std::string, std::string>> whole{{"liver", ""}};
   EXPECT_EQ(read_slicer(slicer_file(whole, {}, 2.0)), (Names{"liver"}));
@@ -162,7 +162,7 @@ TEST_F(LabelChecks, OtherVoxelsThanTheCtsKeepTheVolume) {
   EXPECT_TRUE(is_told("ml of \"liver\"")) << told();
 }
 
-TEST_F(LabelChecks, TerminologyOf3dSlicerIsUnderstood) {
+TEST_F(LabelChecks, ReadTheTerminologyOf3dSlicer) {
   const auto one = [&](const std::string& name, const std::string& tags) {
     Names names = read_slicer(slicer_file({{"liver", ""}, {name, tags}}));
     return names.size() == 2 ? names[1] : names[0];
@@ -233,7 +233,7 @@ TEST_F(LabelChecks, CodesAddSideAndLevelToGenericNames) {
   EXPECT_TRUE(is_told("but its code SCT:15339008 is rib_5")) << told();
 }
 
-TEST_F(LabelChecks, WhatNoTaskNeedsIsLeftOutWithOneLine) {
+TEST_F(LabelChecks, ListUnusedStructuresInOneLine) {
   EXPECT_EQ(read_slicer(slicer_file({{"liver", ""},
                                      {"tissue", terminology("SCT^85756007^Tissue")},
                                      {"my nodes", terminology("SCT^59441001^Lymph node")},

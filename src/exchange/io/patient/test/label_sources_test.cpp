@@ -49,7 +49,7 @@ TEST(LabelSources, SingleMaskIsNamedAfterItsFile) {
   }
 }
 
-TEST(LabelSources, NumbersTakeTheirNamesFromTheMap) {
+TEST(LabelSources, NameNumbersByTheMap) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_image(labels_with({5, 0, 2, 5}), folder / "seg.nii.gz"));
   const auto known = read_label_sources({folder / "seg.nii.gz"}, "totalsegmentator");
@@ -62,7 +62,7 @@ TEST(LabelSources, NumbersTakeTheirNamesFromTheMap) {
   EXPECT_EQ((*own)[0].names, (LabelNames{{2, "spleen"}, {5, "aorta"}}));
 }
 
-TEST(LabelSources, OneNumberOfAMapIsNoMask) {
+TEST(LabelSources, SingleMappedNumberIsNotAMask) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_image(labels_with({5, 5}), folder / "segmentation_of_case_7.nrrd"));
   const auto sources = read_label_sources({folder / "segmentation_of_case_7.nrrd"}, "totalsegmentator");
@@ -70,7 +70,7 @@ TEST(LabelSources, OneNumberOfAMapIsNoMask) {
   EXPECT_EQ((*sources)[0].names, (LabelNames{{5, "liver"}}));
 }
 
-TEST(LabelSources, AMaskIsNamedAfterItsFileWithoutTheEnding) {
+TEST(LabelSources, NameAMaskAfterItsFileWithoutTheExtension) {
   TemporaryFolder folder;
   for (const char* ending : {".nii", ".nii.gz", ".mha", ".nrrd"})
     ASSERT_TRUE(write_image(labels_with({1, 1}), folder / (std::string("liver") + ending))) << ending;
@@ -93,7 +93,7 @@ TEST(LabelSources, NumbersWithoutNamesAreAnError) {
   EXPECT_EQ((*sources)[0].names, (LabelNames{{2, "kidney_right"}, {5, "liver"}}));
 }
 
-TEST(LabelSources, BadMapsAreNamed) {
+TEST(LabelSources, ErrorNamesAMalformedMap) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_image(labels_with({1, 2}), folder / "seg.nii.gz"));
   for (const char* text : {"[labels]\n300 = \"liver\"\n", "[labels]\n1 = 2\n", "[structures]\n1 = \"liver\"\n",
@@ -107,7 +107,7 @@ TEST(LabelSources, BadMapsAreNamed) {
             std::string::npos);
 }
 
-TEST(LabelSources, AMapIgnoresRenamesAndTakesTheRest) {
+TEST(LabelSources, MapIgnoresRenamesAndCatchesTheRest) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_image(labels_with({1, 2, 3, 5, 200}), folder / "seg.nii.gz"));
   const auto names = [&](const std::string& map, const std::string& file) -> LabelNames {
@@ -129,7 +129,7 @@ TEST(LabelSources, AMapIgnoresRenamesAndTakesTheRest) {
   EXPECT_EQ(names("[labels]\n\"*\" = \"ignore\"\n", "liver.nii.gz"), (LabelNames{{4, "liver"}}));
 }
 
-TEST(LabelSources, AFolderMayHaveIgnoredMasks) {
+TEST(LabelSources, IgnoreMasksInAFolder) {
   TemporaryFolder folder;
   std::filesystem::create_directory(folder / "masks");
   ASSERT_TRUE(write_image(labels_with({1}), folder / "masks" / "my_roi.nii.gz"));
@@ -158,7 +158,7 @@ TEST(LabelSources, MasksThatDoNotOverlapShareAVolume) {
   EXPECT_EQ(voxels_of(*sources, "tumor"), (std::vector<std::size_t>{1}));
 }
 
-TEST(LabelSources, AnEmptyMaskCoversItsBoxWithFewVoxels) {
+TEST(LabelSources, EmptyMaskCoversTheGridCoarsely) {
   const volume::GridGeometry whole = oblique_geometry(), coarse = detail::empty_over(whole).geometry;
   EXPECT_LT(coarse.voxel_count(), whole.voxel_count());
   const Vec3 half = Vec3::Constant(-0.5);
@@ -166,7 +166,7 @@ TEST(LabelSources, AnEmptyMaskCoversItsBoxWithFewVoxels) {
   EXPECT_LT((coarse.to_mm({1.5, 1.5, 1.5}) - whole.to_mm({6.5, 4.5, 3.5})).norm(), 1e-4);
 }
 
-TEST(LabelSources, AMaskInAFolderIsNeverASegmentation) {
+TEST(LabelSources, TreatFilesInAFolderAsSingleMasks) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_image(labels_with({1, 1}), folder / "my_lesion.nii.gz"));
   const auto sources = read_label_sources({folder.path()}, "totalsegmentator");
@@ -179,7 +179,7 @@ std::string seg_nrrd(const std::string& sizes_and_kinds, const std::string& segm
          "encoding: raw\nspace origin: (0,0,0)\n" + segments + "\n" + voxels;
 }
 
-TEST(LabelSources, SegNrrdBringsItsOwnNames) {
+TEST(LabelSources, ReadNamesFromSegNrrd) {
   TemporaryFolder folder;
   write_bytes(folder / "a.seg.nrrd", seg_nrrd("dimension: 3\nsizes: 2 2 2\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
                                               "kinds: domain domain domain\n",
@@ -208,7 +208,7 @@ TEST(LabelSources, SegNrrdLayersMayOverlap) {
   EXPECT_EQ(voxels_of(*sources, "tumor"), (std::vector<std::size_t>{1, 7}));
 }
 
-TEST(LabelSources, SegNrrdSegmentsTakeNamesFromTheirTerminologyOrTheMap) {
+TEST(LabelSources, NameSegNrrdSegmentsByTerminologyOrMap) {
   const TemporaryFolder folder;
   const std::string kidney =
       "TerminologyEntry:Segmentation category and type - DICOM master list~SCT^123037004^Anatomical Structure~"
@@ -225,7 +225,7 @@ TEST(LabelSources, SegNrrdSegmentsTakeNamesFromTheirTerminologyOrTheMap) {
   EXPECT_EQ(voxels_of(*sources, "liver_tumor"), (std::vector<std::size_t>{2}));
 }
 
-TEST(LabelSources, SegNrrdOfASmallerExtentKeepsItsPlace) {
+TEST(LabelSources, PlaceASegNrrdOfSmallerExtent) {
   // 3D Slicer saves only the box of the segments: 2 x 2 x 2 voxels within the CT, from voxel (4, 3, 2) on, in two
   // layers.
   const TemporaryFolder folder;
@@ -263,7 +263,7 @@ TEST(LabelSources, FoldersWithoutMasksAreRefused) {
   EXPECT_FALSE(read_label_sources({folder / "missing"}, ""));
 }
 
-TEST(LabelSources, TotalSegmentatorsFolderKeepsEveryMask) {
+TEST(LabelSources, KeepEveryTotalSegmentatorMask) {
   const auto folder = test_data() / "ct-torso/example_seg_fast";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real data at " << folder;
   const auto sources = read_label_sources({folder}, "");
@@ -284,7 +284,7 @@ TEST(LabelSources, TotalSegmentatorsFolderKeepsEveryMask) {
   EXPECT_EQ(structures, files);  // the empty ones are left out
 }
 
-TEST(LabelSources, TotalSegmentatorsNumbersAreKnown) {
+TEST(LabelSources, RecogniseTotalSegmentatorNumbers) {
   const auto data = test_data() / "ct-torso";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real data at " << data;
   const auto known = read_label_sources({data / "example_seg_fast_force_split.nii.gz"}, "totalsegmentator");

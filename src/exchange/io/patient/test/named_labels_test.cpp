@@ -46,7 +46,7 @@ void write_values(const std::filesystem::path& path, const std::vector<std::uint
   ASSERT_TRUE(write_image(labels, path));
 }
 
-TEST(NumberSchemes, EveryNameOfADataSetIsAStructureAndHasASource) {
+TEST(NumberSchemes, HaveKnownStructuresAndSources) {
   const auto map = LabelMap::load("");
   ASSERT_TRUE(map) << map.error().text();
   const auto file = config::load_toml(*checked_data_dir() / "dataset_labels.toml");
@@ -76,7 +76,7 @@ TEST(NumberSchemes, ADataSetIsChosenByItsName) {
     EXPECT_TRUE(unknown.refuses(name)) << unknown.text();
 }
 
-TEST(NumberSchemes, OtherReadingsCoverTheFileAndKeepWhatTheUserHasWritten) {
+TEST(NumberSchemes, OfferOnlyReadingsThatCoverTheFile) {
   const TemporaryFolder folder;
   const auto schemes_of = [&](const std::string& map, const NumberNames& given) {
     std::vector<std::string> names;
@@ -103,7 +103,7 @@ TEST(NumberSchemes, OtherReadingsCoverTheFileAndKeepWhatTheUserHasWritten) {
   EXPECT_TRUE(schemes_of((folder / "all.toml").string(), {{1, "aorta"}, {2, "liver"}}).empty());
 }
 
-TEST(NumberSchemes, NumbersOfTheUsersOwnFileHaveNoOtherReadings) {
+TEST(NumberSchemes, OfferNoOtherReadingsForUserDefinedNumbers) {
   const TemporaryFolder folder;
   write_values(folder / "seg.nii.gz", {1, 2});
   const auto readings = [&](const std::string& toml) {
@@ -117,7 +117,7 @@ TEST(NumberSchemes, NumbersOfTheUsersOwnFileHaveNoOtherReadings) {
   EXPECT_GT(readings("base = \"totalsegmentator\"\n"), 3U);
 }
 
-TEST(NamedLabels, AFileNamedAfterOneStructureHasOneValue) {
+TEST(NamedLabels, RefuseSeveralValuesInAFileNamedAfterOneStructure) {
   for (const char* name : {"liver.nii.gz", "vertebrae.nii.gz", "kidney_left.nrrd", "pancreas_001.nii.gz"}) {
     const TemporaryFolder folder;
     write_values(folder / name, {1, 2});
@@ -142,7 +142,7 @@ TEST(NamedLabels, AFileNamedAfterOneStructureHasOneValue) {
   EXPECT_EQ(read_labels_of(folder / "case_7.nii.gz").names(), (NumberNames{{1, "spleen"}, {5, "liver"}}));
 }
 
-TEST(NamedLabels, TheBackgroundHasNoName) {
+TEST(NamedLabels, RefuseANameForTheBackground) {
   const TemporaryFolder folder;
   volume::LabelGrid raised(oblique_geometry(), 1);  // every number raised by one: the background is 1
   raised.voxels[40] = 6;
@@ -159,7 +159,7 @@ TEST(NamedLabels, TheBackgroundHasNoName) {
   EXPECT_EQ(read_labels_of(folder / "body.nii.gz").text(), "read");
 }
 
-TEST(NamedLabels, KeysThatCanMatchNothingAreRefused) {
+TEST(NamedLabels, RefuseKeysThatCannotMatch) {
   const TemporaryFolder folder;
   write_values(folder / "seg.nii.gz", {1, 5});
   for (const char* text : {"[labels]\n\" 5\" = \"liver\"\n", "[labels]\n\"5.0\" = \"liver\"\n",
@@ -201,7 +201,7 @@ std::vector<std::uint8_t> few_values(const std::vector<std::uint8_t>& values) {
   return voxels;
 }
 
-TEST(LabelTable, OfTheHeaderNamesTheNumbers) {
+TEST(LabelTable, InTheHeaderNamesTheNumbers) {
   const TemporaryFolder folder;
   const auto path = folder / "seg.nii";
   for (const std::int32_t kind : {0, 30}) {
@@ -228,7 +228,7 @@ TEST(LabelTable, OfTheHeaderNamesTheNumbers) {
   EXPECT_TRUE(mask.warns_of("\"spleen\""));
 }
 
-TEST(LabelTable, DamagedOnesAreRefusedOrNoTable) {
+TEST(LabelTable, RefusesOrIgnoresDamagedTables) {
   const auto error = [](const std::string& xml) {
     const auto names = detail::read_label_table(xml, "seg.nii");
     return names ? std::string("read") : names.error().text();
@@ -255,7 +255,7 @@ TEST(LabelTable, DamagedOnesAreRefusedOrNoTable) {
   }
 }
 
-TEST(NamedLabels, FilesBesideOthersAreTold) {
+TEST(NamedLabels, WarnOfUnreadFilesInTheFolder) {
   const TemporaryFolder folder;
   write_values(folder / "liver.nii.gz", {1});
   EXPECT_FALSE(read_labels_of(folder.path()).warns_of("not read"));
@@ -270,7 +270,7 @@ TEST(NamedLabels, FilesBesideOthersAreTold) {
   for (const char* name : {"spleen.hdr", "spleen.img", "more"}) EXPECT_TRUE(read.warns_of(name)) << name;
 }
 
-TEST(NamedLabels, SegNrrdFieldsAreNeitherTwiceNorMisspelt) {
+TEST(NamedLabels, RefuseRepeatedOrMisspeltSegNrrdFields) {
   const TemporaryFolder folder;
   const auto read_with = [&](const std::string& pairs) {
     write_bytes(
@@ -289,7 +289,7 @@ TEST(NamedLabels, SegNrrdFieldsAreNeitherTwiceNorMisspelt) {
   EXPECT_TRUE(read_with(right + "Segment2_labelValue:=2\n").refuses("misspells"));
 }
 
-TEST(NamedLabels, AMaskCanSayInItsNameThatItIsOne) {
+TEST(NamedLabels, RecogniseMaskFileNames) {
   const TemporaryFolder folder;
   for (const char* name : {"spleen_seg.nii", "spleen-mask.nii.gz", "spleen_Segmentation.nrrd", "spleen label.nii"}) {
     write_values(folder / name, {1, 1});

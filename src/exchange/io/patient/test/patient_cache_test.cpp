@@ -24,7 +24,7 @@ std::size_t entries_in(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-TEST(PatientCache, FindsWhatItKeptAndNothingElse) {
+TEST(PatientCache, FindsOnlyStoredPatients) {
   const TemporaryFolder folder;
   const PatientCache cache(folder / "patients");
   EXPECT_FALSE(cache.find({"abdomen", 3}));
@@ -42,7 +42,7 @@ TEST(PatientCache, FindsWhatItKeptAndNothingElse) {
   EXPECT_EQ(loaded->content_hash, patient.content_hash);
 }
 
-TEST(PatientCache, AnotherDataFileIsAnotherPatient) {
+TEST(PatientCache, MissesAfterADataFileChange) {
   const TemporaryFolder folder;
   const PatientCache cache(folder / "patients");
   ASSERT_TRUE(cache.keep({"abdomen", 3}, coarse(3)));
@@ -55,7 +55,7 @@ TEST(PatientCache, AnotherDataFileIsAnotherPatient) {
   EXPECT_TRUE(cache.find({"abdomen", 3}));
 }
 
-TEST(PatientCache, KeptPatientIsThePatientRoundedAsSaved) {
+TEST(PatientCache, ReturnsThePatientAsSaved) {
   const TemporaryFolder folder;
   anatomy::VirtualPatient patient = coarse(3);
   const auto kept = PatientCache(folder / "patients").keep({"abdomen", 3}, patient);
@@ -77,7 +77,7 @@ TEST(PatientCache, KeptPatientIsThePatientRoundedAsSaved) {
   EXPECT_EQ(loaded->labels.voxels, patient.labels.voxels);
 }
 
-TEST(PatientCache, EntryGetsItsSurfacesLater) {
+TEST(PatientCache, AddsSurfacesToAnEntryLater) {
   const TemporaryFolder folder;
   const PatientCache cache(folder / "patients");
   const anatomy::VirtualPatient patient = coarse(3);
@@ -96,7 +96,7 @@ TEST(PatientCache, EntryGetsItsSurfacesLater) {
   EXPECT_EQ(loaded->content_hash, patient.content_hash);
 }
 
-TEST(PatientCache, SecondWriterFindsTheEntryOfTheFirst) {
+TEST(PatientCache, SecondWriterReusesTheEntryOfTheFirst) {
   const TemporaryFolder folder;
   const PatientCache cache(folder / "patients");
   const anatomy::VirtualPatient patient = coarse(3);
@@ -107,7 +107,7 @@ TEST(PatientCache, SecondWriterFindsTheEntryOfTheFirst) {
   EXPECT_EQ(*second, *first);
 }
 
-TEST(PatientCache, LeastRecentlyUsedEntriesGo) {
+TEST(PatientCache, EvictsLeastRecentlyUsedEntries) {
   const TemporaryFolder folder;
   const PatientCache cache(folder / "patients");
   const anatomy::VirtualPatient patient = coarse(1);
@@ -136,7 +136,7 @@ TEST(PatientCache, FoldersOfTheUserAreNotCached) {
   EXPECT_FALSE(fs::exists(folder / "patients"));
 }
 
-TEST(PatientCache, DamagedEntryIsForgotten) {
+TEST(PatientCache, DropsADamagedEntry) {
   const TemporaryFolder folder;
   const PatientCache cache(folder / "patients");
   const auto kept = cache.keep({"abdomen", 3}, coarse(3));

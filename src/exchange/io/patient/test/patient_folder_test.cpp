@@ -64,7 +64,7 @@ class PatientFolder : public ::testing::Test {
   anatomy::VirtualPatient patient_ = small_patient();
 };
 
-TEST_F(PatientFolder, ComesBackAsItWas) {
+TEST_F(PatientFolder, RoundTrips) {
   const auto loaded = load_patient(path_);
   ASSERT_TRUE(loaded) << loaded.error().text();
   EXPECT_EQ(loaded->name, patient_.name);
@@ -94,7 +94,7 @@ TEST_F(PatientFolder, ComesBackAsItWas) {
   EXPECT_EQ(loaded->paths[0].line_P.b, patient_.paths[0].line_P.b);
 }
 
-TEST_F(PatientFolder, KeepsMeshesWhoseNamesAreNoFileNames) {
+TEST_F(PatientFolder, KeepsMeshesWithNamesInvalidAsFileNames) {
   const auto meshes = load_patient_meshes(path_);
   ASSERT_TRUE(meshes) << meshes.error().text();
   ASSERT_EQ(meshes->size(), 2U);
@@ -110,12 +110,12 @@ TEST_F(PatientFolder, IsNeverOverwritten) {
   EXPECT_TRUE(load_patient(path_));
 }
 
-TEST_F(PatientFolder, OfANewerVersionIsRefused) {
+TEST_F(PatientFolder, RefusesANewerVersion) {
   replace_in_description("format_version = 2", "format_version = 3");
   EXPECT_NE(load_error().find("newer version"), std::string::npos) << load_error();
 }
 
-TEST_F(PatientFolder, OfFormat1HasNoDerivedLabels) {
+TEST_F(PatientFolder, LoadsFormat1WithoutDerivedLabels) {
   replace_in_description("format_version = 2", "format_version = 1");
   replace_in_description("derived = true\n", "");
   const auto loaded = load_patient(path_);
@@ -124,12 +124,12 @@ TEST_F(PatientFolder, OfFormat1HasNoDerivedLabels) {
   EXPECT_EQ(loaded->content_hash, patient_.content_hash);
 }
 
-TEST_F(PatientFolder, WithABadRepairIsRefused) {
+TEST_F(PatientFolder, RefusesAMalformedRepair) {
   replace_in_description("position = [1.5, ", "position = [");
   EXPECT_NE(load_error().find("three numbers"), std::string::npos) << load_error();
 }
 
-TEST_F(PatientFolder, WithAMissingFileIsRefused) {
+TEST_F(PatientFolder, RefusesAMissingFile) {
   for (const char* name : {"ct.nrrd", "labels.nrrd", "skin_distance.nrrd", "landmarks.mrk.json", "paths.mrk.json"}) {
     const std::string bytes = read_bytes(path_ / name);
     std::filesystem::remove(path_ / name);
@@ -141,7 +141,7 @@ TEST_F(PatientFolder, WithAMissingFileIsRefused) {
   EXPECT_FALSE(load_patient(folder_ / "nowhere"));
 }
 
-TEST_F(PatientFolder, WithATruncatedVolumeIsRefused) {
+TEST_F(PatientFolder, RefusesATruncatedVolume) {
   for (const char* name : {"ct.nrrd", "labels.nrrd", "skin_distance.nrrd"}) {
     const std::string bytes = read_bytes(path_ / name);
     write_bytes(path_ / name, bytes.substr(0, bytes.size() - bytes.size() / 5));
@@ -150,28 +150,28 @@ TEST_F(PatientFolder, WithATruncatedVolumeIsRefused) {
   }
 }
 
-TEST_F(PatientFolder, WithAnotherGridIsRefused) {
+TEST_F(PatientFolder, RefusesMismatchedGrids) {
   volume::LabelGrid moved = patient_.labels;
   moved.geometry.origin_P.x() += 1.0;
   ASSERT_TRUE(write_image(moved, path_ / "labels.nrrd"));
   EXPECT_NE(load_error().find("the same grid"), std::string::npos) << load_error();
 }
 
-TEST_F(PatientFolder, WithChangedVoxelsIsRefused) {
+TEST_F(PatientFolder, RefusesChangedVoxels) {
   volume::CtGrid changed = patient_.ct;
   ++changed.voxels[17];
   ASSERT_TRUE(write_image(changed, path_ / "ct.nrrd"));
   EXPECT_NE(load_error().find("changed after"), std::string::npos) << load_error();
 }
 
-TEST_F(PatientFolder, WithALabelOutsideOfTheTableIsRefused) {
+TEST_F(PatientFolder, RefusesALabelOutsideTheTable) {
   volume::LabelGrid changed = patient_.labels;
   changed.voxels[17] = 9;
   ASSERT_TRUE(write_image(changed, path_ / "labels.nrrd"));
   EXPECT_NE(load_error().find("value 9"), std::string::npos) << load_error();
 }
 
-TEST_F(PatientFolder, WithTwoLabelsOfOneIdIsRefused) {
+TEST_F(PatientFolder, RefusesTwoLabelsWithOneId) {
   replace_in_description("id = 200", "id = 7");
   EXPECT_NE(load_error().find("twice"), std::string::npos) << load_error();
 }
@@ -189,7 +189,7 @@ TEST(PatientFolderFailure, LeavesNothingBehind) {
   EXPECT_TRUE(folder.is_empty());
 }
 
-TEST(PatientFolderFailure, KilledHalfWayLeavesNoPatient) {
+TEST(PatientFolderFailure, LeavesNoPatientWhenKilled) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");  // the child starts afresh: no threads are lost in a fork
   // The child runs this from the top: it has to find its parent's folder, not make one of its own.
   constexpr const char* kFolderName = "TROCAR_TEST_KILLED_IN";
@@ -209,7 +209,7 @@ TEST(PatientFolderFailure, KilledHalfWayLeavesNoPatient) {
   ::unsetenv(kFolderName);
 }
 
-TEST(PatientFolderFailure, RefusesAPatientThatDoesNotFitTogether) {
+TEST(PatientFolderFailure, RefusesAnInconsistentPatient) {
   TemporaryFolder folder;
   anatomy::VirtualPatient patient = small_patient();
   patient.labels.voxels[0] = 99;

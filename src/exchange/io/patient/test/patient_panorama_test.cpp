@@ -21,7 +21,7 @@ void write_panorama(const fs::path& folder, const Pose& X_PU, const ImageFields&
   ASSERT_TRUE(write_transform(X_PU, folder / kPanoramaTransformFile));
 }
 
-TEST(PatientPanorama, HasTheTransformAndTheDynamicRangeOfItsFiles) {
+TEST(PatientPanorama, ReadsTransformAndDynamicRangeFromItsFiles) {
   const TemporaryFolder folder;
   const Pose X_PU = Pose::translation(Vec3(5.0, -6.0, 7.0));
   write_panorama(folder.path(), X_PU, {{"trocar_dynamic_range_db", "48"}});
@@ -34,7 +34,7 @@ TEST(PatientPanorama, HasTheTransformAndTheDynamicRangeOfItsFiles) {
   EXPECT_EQ((*panorama)->geometry.size, (volume::Index3{20, 20, 20}));
 }
 
-TEST(PatientPanorama, MissingFilesAreNamedWithTheCommandsThatMakeThem) {
+TEST(PatientPanorama, NamesMissingFilesAndTheCommandsToMakeThem) {
   const TemporaryFolder folder;
   write_panorama(folder.path(), Pose());
   fs::remove(folder.path() / kPanoramaTransformFile);

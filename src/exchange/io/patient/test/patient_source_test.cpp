@@ -20,7 +20,7 @@ std::string save_small_patient(const fs::path& folder, std::int16_t hu) {
   return anatomy::hash_patient(patient);
 }
 
-TEST(RecordedPatient, IsFoundWhereItWasAndBesideTheRecord) {
+TEST(RecordedPatient, IsFoundAtItsPathAndBesideTheRecord) {
   const TemporaryFolder folder;
   const fs::path here = folder / "here";
   const fs::path sessions = folder / "sessions";
@@ -42,7 +42,7 @@ TEST(RecordedPatient, IsFoundWhereItWasAndBesideTheRecord) {
   EXPECT_NE(gone.error().text().find("--patient"), std::string::npos);
 }
 
-TEST(RecordedPatient, AnotherPatientInThePlaceIsGivenLast) {
+TEST(RecordedPatient, PrefersTheRecordedPatientOverAnotherAtItsPath) {
   const TemporaryFolder folder;
   save_small_patient(folder / "case", 41);
   EXPECT_EQ(find_recorded_patient((folder / "case").string(), "another hash", folder.path()).value(),

@@ -23,7 +23,7 @@ TEST(PatientThumbnail, IsAFileInThePatientFolder) {
   EXPECT_EQ(find_thumbnail(patient), folder / kThumbnailFile);
 }
 
-TEST(PatientThumbnail, OfAnEmbeddedPatientIsData) {
+TEST(PatientThumbnail, IsADataFileForAnEmbeddedPatient) {
   const trocar::testing::OwnDataFolder own;
   EXPECT_FALSE(find_thumbnail("nobody"));
   EXPECT_FALSE(find_thumbnail(""));

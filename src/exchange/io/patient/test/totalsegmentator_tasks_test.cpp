@@ -44,7 +44,7 @@ TEST(TotalSegmentatorTasks, EveryClassIsAStructureOrARegion) {
   EXPECT_GT(names.size(), 250U);
 }
 
-TEST(TotalSegmentatorTasks, SomeClassesHaveTheTissueOfTheirKind) {
+TEST(TotalSegmentatorTasks, MapClassesToTissues) {
   const auto map = LabelMap::load("");
   ASSERT_TRUE(map) << map.error().text();
   const auto tissue = [&](const char* name) -> std::string {
@@ -69,7 +69,7 @@ TEST(TotalSegmentatorTasks, SomeClassesHaveTheTissueOfTheirKind) {
   EXPECT_EQ(tissue("lung_nodules"), "soft_tissue");
 }
 
-TEST(TotalSegmentatorTasks, NumbersOfATaskAreALabelMap) {
+TEST(TotalSegmentatorTasks, SelectANumberSchemeByTask) {
   const TemporaryFolder folder;
   volume::LabelGrid labels(testing::oblique_geometry());
   labels.voxels[0] = 1;

@@ -33,7 +33,7 @@ std::string with_reconstruction(std::string_view attributes, std::string_view in
                      attributes, inside);
 }
 
-TEST_F(PlusConfigFile, GivesTransformsAndReconstruction) {
+TEST_F(PlusConfigFile, ReadsTransformsAndReconstruction) {
   const auto config = read(
       "<?xml version=\"1.0\"?><!-- calibrated --><PlusConfiguration version=\"2.1\"><CoordinateDefinitions>"
       "<Transform From=\"Image\" To=\"Probe\" Matrix=\"0.1 0 0 1\n 0 0.2 0 2 0 0 0.3 3 0 0 0 1\"/>"
@@ -61,7 +61,7 @@ TEST_F(PlusConfigFile, GivesTransformsAndReconstruction) {
   EXPECT_EQ(options.holes[1].sticks, 2);
 }
 
-TEST_F(PlusConfigFile, FillsHolesOnlyWhereItSaysSo) {
+TEST_F(PlusConfigFile, FillsHolesOnlyIfEnabled) {
   const auto config =
       read(with_reconstruction("FillHoles=\"OFF\"", "<HoleFilling><HoleFillingElement/></HoleFilling>"));
   ASSERT_TRUE(config) << config.error().text();
@@ -82,7 +82,7 @@ TEST_F(PlusConfigFile, ReadsAFanInDegrees) {
   EXPECT_NE(config->left_aside[0].find("OutputOrigin"), std::string::npos);
 }
 
-TEST_F(PlusConfigFile, RefusesDamageWithOneLine) {
+TEST_F(PlusConfigFile, RefusesDamagedFilesInOneLine) {
   struct Case {
     std::string text, word;
   };

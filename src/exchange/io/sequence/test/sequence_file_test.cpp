@@ -53,7 +53,7 @@ class SequenceFile : public ::testing::Test {
   std::filesystem::path path_ = folder_ / "sweep.igs.mha";
 };
 
-TEST_F(SequenceFile, ReadsPicturesPlacesAndTimes) {
+TEST_F(SequenceFile, ReadsImagesPosesAndTimes) {
   const auto sequence = read(header() + kPixels);
   ASSERT_TRUE(sequence) << sequence.error().text();
   EXPECT_EQ(sequence->columns, 3);
@@ -64,7 +64,7 @@ TEST_F(SequenceFile, ReadsPicturesPlacesAndTimes) {
   EXPECT_EQ(sequence->frames[1].time_s, 1.75);
 }
 
-TEST_F(SequenceFile, IsToldFromAVolumeWhichItIsNotReadAs) {
+TEST_F(SequenceFile, IsDistinguishedFromAVolume) {
   write_bytes(path_, header() + kPixels);
   EXPECT_TRUE(is_sequence(path_).value());
   std::vector<std::string> warnings;
@@ -91,7 +91,7 @@ TEST_F(SequenceFile, HonoursStatuses) {
   EXPECT_TRUE(sequence->frames[1].transforms.empty());
 }
 
-TEST_F(SequenceFile, TurnsPicturesToOneOrientation) {
+TEST_F(SequenceFile, ReordersImagesToOneOrientation) {
   const auto far_near = read(header("MFA", "MNA") + kPixels);
   ASSERT_TRUE(far_near) << far_near.error().text();
   EXPECT_EQ(far_near->pixels, (std::vector<std::uint8_t>{4, 5, 6, 1, 2, 3, 10, 11, 12, 7, 8, 9}));
@@ -101,7 +101,7 @@ TEST_F(SequenceFile, TurnsPicturesToOneOrientation) {
   EXPECT_NE(refusal(header("MFA", "AMF") + kPixels).find("orientation AMF"), std::string::npos);
 }
 
-TEST_F(SequenceFile, ReadsAHeaderBesideItsPixels) {
+TEST_F(SequenceFile, ReadsADetachedHeader) {
   write_bytes(folder_ / "pixels.raw", kPixels);
   const auto sequence = read(header("LOCAL", "pixels.raw"));
   ASSERT_TRUE(sequence) << sequence.error().text();
@@ -109,7 +109,7 @@ TEST_F(SequenceFile, ReadsAHeaderBesideItsPixels) {
   EXPECT_NE(refusal(header("LOCAL", "gone.raw")).find("gone.raw"), std::string::npos);
 }
 
-TEST_F(SequenceFile, RefusesDamageWithOneLine) {
+TEST_F(SequenceFile, RefusesDamagedFilesInOneLine) {
   struct Case {
     std::string bytes, word;
   };
@@ -147,7 +147,7 @@ TEST_F(SequenceFile, RefusesDamageWithOneLine) {
   EXPECT_FALSE(read_sequence(folder_.path()));
 }
 
-TEST_F(SequenceFile, RefusesAHeaderOfEndlessFields) {
+TEST_F(SequenceFile, RefusesAnEndlessHeader) {
   std::string other, frames;
   for (int n = 0; n < 10'001; ++n) other += "field" + std::to_string(n) + " = 1\n";
   for (int n = 0; n < 1'000'001; ++n) frames += "Seq_Frame0000_a" + std::to_string(n % 10) + " =\n";
@@ -155,7 +155,7 @@ TEST_F(SequenceFile, RefusesAHeaderOfEndlessFields) {
     EXPECT_NE(refusal(header("Kinds", fields + "Kinds") + kPixels).find("header is too large"), std::string::npos);
 }
 
-TEST_F(SequenceFile, RefusesAFileThatIsCutShort) {
+TEST_F(SequenceFile, RefusesATruncatedFile) {
   ultrasound::TrackedSequence sequence = *read(header() + kPixels);
   const auto whole_path = folder_ / "whole.igs.mha";
   ASSERT_TRUE(write_sequence(sequence, whole_path));
@@ -184,7 +184,7 @@ ultrasound::TrackedSequence sweep() {
   return sequence;
 }
 
-TEST_F(SequenceFile, WritesWhatItReads) {
+TEST_F(SequenceFile, RoundTrips) {
   const ultrasound::TrackedSequence sequence = sweep();
   ASSERT_TRUE(write_sequence(sequence, path_));
   const auto read_back = read_sequence(path_);
@@ -200,7 +200,7 @@ TEST_F(SequenceFile, WritesWhatItReads) {
   }
 }
 
-TEST_F(SequenceFile, WritesTheNamesOfPlus) {
+TEST_F(SequenceFile, WritesPlusFieldNames) {
   ASSERT_TRUE(write_sequence(sweep(), path_));
   const std::string text = read_bytes(path_);
   for (const char* line : {"UltrasoundImageOrientation = MFA\n", "Seq_Frame0000_ImageToReferenceTransformStatus = OK\n",
@@ -210,7 +210,7 @@ TEST_F(SequenceFile, WritesTheNamesOfPlus) {
     EXPECT_NE(text.find(line), std::string::npos) << line;
 }
 
-TEST_F(SequenceFile, RefusesToWriteWhatNobodyCouldRead) {
+TEST_F(SequenceFile, RefusesToWriteInvalidSequences) {
   ultrasound::TrackedSequence sequence = sweep();
   EXPECT_FALSE(write_sequence({}, path_));
   EXPECT_FALSE(write_sequence(sequence, folder_ / "sweep.nrrd"));
@@ -225,7 +225,7 @@ TEST_F(SequenceFile, RefusesToWriteWhatNobodyCouldRead) {
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
-TEST(RealSequence, IsReadAsPlusWroteIt) {
+TEST(RealSequence, MatchesPlus) {
   const auto path = test_data() / "us-spine-phantom" / "SpinePhantomFreehand.igs.mha";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no real data at " << path;
   const auto sequence = read_sequence(path);

@@ -25,7 +25,7 @@ Result<Pose> read_text(const std::string& text) {
   return read_transform(folder / "x.tfm");
 }
 
-TEST(TransformFile, ComesBackAsItWas) {
+TEST(TransformFile, RoundTrips) {
   TemporaryFolder folder;
   const Pose X_PT((Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized())).toRotationMatrix(), {12.5, -300.25, 1e-3});
   ASSERT_TRUE(write_transform(X_PT, folder / "probe.tfm"));
@@ -36,7 +36,7 @@ TEST(TransformFile, ComesBackAsItWas) {
   EXPECT_TRUE(read_bytes(folder / "probe.tfm").starts_with("#Insight Transform File V1.0"));
 }
 
-TEST(TransformFile, DeformationIsWhatItkReads) {
+TEST(TransformFile, DeformationMatchesItk) {
   TemporaryFolder folder;
   const Pose X_AB((Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized())).toRotationMatrix(), {40.0, -20.0, 7.0});
   volume::SplineField field;
@@ -88,14 +88,14 @@ TEST(TransformFile, ReadsAffineRowByRow) {
   EXPECT_LT((*pose * Vec3(1, 0, 0) - Vec3(10, 21, 30)).norm(), 1e-12);
 }
 
-TEST(TransformFile, TurnsAboutTheCentreOfRotation) {
+TEST(TransformFile, AppliesTheCentreOfRotation) {
   const auto pose = read_text(tfm("AffineTransform_double_3_3", "0 -1 0 1 0 0 0 0 1 10 20 30", "5 6 7"));
   ASSERT_TRUE(pose) << pose.error().text();
   EXPECT_LT((*pose * Vec3(5, 6, 7) - Vec3(15, 26, 37)).norm(), 1e-12);
   EXPECT_LT((*pose * Vec3(6, 6, 7) - Vec3(15, 27, 37)).norm(), 1e-12);
 }
 
-TEST(TransformFile, ReadsTheRigidKindsOfItk) {
+TEST(TransformFile, ReadsTheRigidTransformsOfItk) {
   const double half = std::sqrt(0.5);
   for (const std::string& text : {tfm("Euler3DTransform_double_3_3", "0 0 1.5707963267948966 1 2 3", "0 0 0 0"),
                                   tfm("VersorRigid3DTransform_double_3_3", fmt::format("0 0 {} 1 2 3", half), "0 0 0"),
@@ -107,7 +107,7 @@ TEST(TransformFile, ReadsTheRigidKindsOfItk) {
   }
 }
 
-TEST(TransformFile, RefusesWhatIsNotRigid) {
+TEST(TransformFile, RefusesNonRigidTransforms) {
   for (const char* parameters :
        {"1.001 0 0 0 1 0 0 0 1 0 0 0", "1 0.01 0 0 1 0 0 0 1 0 0 0", "-1 0 0 0 1 0 0 0 1 0 0 0",
         "0 0 0 0 0 0 0 0 0 0 0 0", "nan 0 0 0 1 0 0 0 1 0 0 0", "1 0 0 0 1 0 0 0 1 nan 0 0"})
@@ -115,7 +115,7 @@ TEST(TransformFile, RefusesWhatIsNotRigid) {
   EXPECT_TRUE(read_text(tfm("AffineTransform_double_3_3", "1.00001 0 0 0 1 0 0 0 1 0 0 0", "0 0 0")));
 }
 
-TEST(TransformFile, RefusesWhatIsNoTransform) {
+TEST(TransformFile, RefusesNonTransformFiles) {
   for (const char* text :
        {"", "hello", "#Insight Transform File V1.0\n", "#Insight Transform File V1.0\nTransform: Nonsense_double_3_3\n",
         "#Insight Transform File V1.0\nTransform: AffineTransform_double_3_3\nParameters: 1 2\nFixedParameters: 0\n",
@@ -141,7 +141,7 @@ TEST(TransformFile, RefusesAWrongNumberOfParameters) {
   EXPECT_FALSE(read_text(tfm(type, "1 0 0 0 1 0 0 0 1 5 6 7", "0 0")));
 }
 
-TEST(TransformFile, RefusesToWriteAPoseThatIsNoNumber) {
+TEST(TransformFile, RefusesToWriteANonFinitePose) {
   TemporaryFolder folder;
   EXPECT_FALSE(write_transform(Pose::translation({std::nan(""), 0, 0}), folder / "x.tfm"));
   EXPECT_TRUE(folder.is_empty());

@@ -26,7 +26,7 @@ TEST(FrameCost, ExpectsNothingBeforeTheFirstMeasurement) {
   EXPECT_FALSE(cost.expected_ms(1, 2.0)) << "no times";
 }
 
-TEST(FrameCost, LearnsTheTimePerWorkAndTheShareOfALevel) {
+TEST(FrameCost, LearnsTheTimePerWorkOfEachLevel) {
   FrameCost cost(3);
   // Level 2 takes 1.5 times the time that its nominal work says.
   for (int n = 0; n < 400; ++n) {
@@ -43,7 +43,7 @@ TEST(FrameCost, SelectsTheFinestLevelWithinTheTarget) {
   EXPECT_EQ(learned(400.0).select_level(kWork, 50.0), 0U) << "the coarsest in any case";
 }
 
-TEST(FrameCost, KeepsALevelWhoseTimeVariesAboutTheTarget) {
+TEST(FrameCost, KeepsALevelNearTheTarget) {
   // 90 % of the target: too close to begin with a level, good enough to stay at it.
   FrameCost cost = learned(0.9 * 50.0 / kWork[2]);
   EXPECT_EQ(cost.select_level(kWork, 50.0), 1U);

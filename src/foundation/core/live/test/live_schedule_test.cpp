@@ -51,7 +51,7 @@ TEST(LiveSchedule, DetailFollowsTheCostWhileRequestsChange) {
   EXPECT_EQ(machine.last, TestLevel::kFine);
 }
 
-TEST(LiveSchedule, FullDetailOnceRequestsStayTheSame) {
+TEST(LiveSchedule, UsesFullDetailWhenRequestsStayEqual) {
   Machine machine;
   machine.ms_per_work = 40.0;
   machine.run(1.0, true);
@@ -73,7 +73,7 @@ TEST(LiveSchedule, RefreshesWithinTheBusyShare) {
   EXPECT_NEAR(machine.frames, 12, 2) << "half of the time";
 }
 
-TEST(LiveSchedule, ARestartMakesTheNextRequestDueAndKeepsCosts) {
+TEST(LiveSchedule, RestartMakesTheNextRequestDueAndKeepsCosts) {
   Machine machine;
   machine.run(1.0, true);
   EXPECT_FALSE(machine.schedule.due({machine.place}, machine.now_s));

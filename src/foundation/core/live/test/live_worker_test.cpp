@@ -75,7 +75,7 @@ class TestRenderer final : public LiveRenderer<TestTraits> {
   int held_place_ = 0;
 };
 
-TEST(LiveWorker, TheNewestRequestWinsAndTheLastIsNotLost) {
+TEST(LiveWorker, RendersTheNewestRequest) {
   Stage stage;
   Worker worker(stage.options());
   worker.open(std::make_unique<TestRenderer>(stage));
@@ -114,7 +114,7 @@ TEST(LiveWorker, DetailFollowsTheMeasuredCost) {
   EXPECT_EQ(level_at(5.0), TestLevel::kFine);
 }
 
-TEST(LiveWorker, RendersAnUnchangedRequestAtTheRefreshTimeOnly) {
+TEST(LiveWorker, RendersUnchangedRequestsOnlyAtTheRefreshTime) {
   Stage stage;
   Worker worker(stage.options());
   worker.open(std::make_unique<TestRenderer>(stage));
@@ -129,7 +129,7 @@ TEST(LiveWorker, RendersAnUnchangedRequestAtTheRefreshTimeOnly) {
   EXPECT_EQ(stage.rendered.size(), 2U);
 }
 
-TEST(LiveWorker, StopsWhileAFrameIsInWork) {
+TEST(LiveWorker, StopsDuringAFrame) {
   Stage stage;
   {
     Worker worker(stage.options());
@@ -143,7 +143,7 @@ TEST(LiveWorker, StopsWhileAFrameIsInWork) {
   EXPECT_EQ(stage.rendered, (std::vector<int>{1})) << "a request that waits is dropped";
 }
 
-TEST(LiveWorker, ANewSubjectDropsTheFrameInWorkAndItsImage) {
+TEST(LiveWorker, NewSubjectDropsTheFrameInProgress) {
   Stage stage, other;
   Worker worker(stage.options());
   worker.open(std::make_unique<TestRenderer>(stage));
@@ -160,7 +160,7 @@ TEST(LiveWorker, ANewSubjectDropsTheFrameInWorkAndItsImage) {
   EXPECT_EQ(other.rendered, (std::vector<int>{1})) << "due at once, although the place is the same";
 }
 
-TEST(LiveWorker, AFailedFrameKeepsTheLastImageAndTheNextRequestTriesAgain) {
+TEST(LiveWorker, FailedFrameKeepsTheLastImageUntilTheNextRequest) {
   Stage stage;
   Worker worker(stage.options());
   worker.open(std::make_unique<TestRenderer>(stage));
@@ -178,7 +178,7 @@ TEST(LiveWorker, AFailedFrameKeepsTheLastImageAndTheNextRequestTriesAgain) {
   EXPECT_EQ(worker.newest()->place, 2);
 }
 
-TEST(LiveWorker, AHeldImageNeedsNoScheduleAndLiveImagesFollowAtOnce) {
+TEST(LiveWorker, HeldImageBypassesTheSchedule) {
   Stage stage;
   Worker worker(stage.options());
   worker.open(std::make_unique<TestRenderer>(stage));
@@ -206,7 +206,7 @@ TEST(LiveWorker, RequestsWithoutASubjectAreDropped) {
   EXPECT_EQ(worker.newest(), nullptr);
 }
 
-TEST(LiveWorker, WithoutAThreadTellsItAndStartsItWithALaterRequest) {
+TEST(LiveWorker, ReportsAMissingThreadAndRetriesOnRequest) {
   Stage stage;
   Worker worker(stage.options());
   worker.open(std::make_unique<TestRenderer>(stage));

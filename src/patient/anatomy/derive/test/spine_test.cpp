@@ -63,7 +63,7 @@ TEST(SpineLabels, OrderVertebraeByName) {
   EXPECT_FALSE(detail::are_neighbours(detail::kL1, detail::kL1 + 2));
 }
 
-TEST(LigamentumFlavum, ClosesTheGapsBetweenLaminaeAndNothingElse) {
+TEST(LigamentumFlavum, FillsOnlyTheGapsBetweenLaminae) {
   const LabelledBox box = derived(true);
   ASSERT_GT(box.count("ligamentum_flavum"), 0U);
   box.for_each("ligamentum_flavum", [](const Vec3& p) {
@@ -76,7 +76,7 @@ TEST(LigamentumFlavum, ClosesTheGapsBetweenLaminaeAndNothingElse) {
 }
 
 // L2-L3 and L3-L4: 3.19 and 3.38 mm along the normal, 1.12 times that along y on the sides; voxels of 1 mm.
-TEST(LigamentumFlavum, HasThePublishedThicknessAndIsAVInAxialSlices) {
+TEST(LigamentumFlavum, HasThePublishedThicknessAndVShape) {
   const LabelledBox box = derived(true);
   for (const double z : {38.0, 70.0})
     for (const double x : {-6.0, 0.0, 6.0}) {
@@ -93,7 +93,7 @@ TEST(LigamentumFlavum, HasThePublishedThicknessAndIsAVInAxialSlices) {
     }
 }
 
-TEST(DuralSac, IsTheLabelledCordBelowL1AndSurroundsTheCordAbove) {
+TEST(DuralSac, IsTheCordBelowL1AndSurroundsItAbove) {
   const LabelledBox whole = make_spine(true);
   const LabelledBox box = derived(true, {false, {"dural_sac"}});
   EXPECT_EQ(box.count("dural_sac") + box.count("spinal_cord"), whole.count("spinal_cord"));
@@ -168,7 +168,7 @@ TEST(EpiduralFat, LeavesOutVoxelsThatContainBone) {
   }
 }
 
-TEST(EpiduralFat, IsNotWhereNothingCanBeFat) {
+TEST(EpiduralFat, ExcludesVoxelsThatCannotBeFat) {
   LabelledBox box = make_spine(true);
   box.patient.ct = volume::CtGrid(box.patient.ct.geometry, 40);
   derive_structures(box.patient, box.known, {});
@@ -205,7 +205,7 @@ TEST(SpinousLigaments, LieBetweenAndBehindTheSpinousProcesses) {
 }
 
 /// A needle in the midline passes the layers of a lumbar puncture in order.
-TEST(DeriveStructures, GiveTheLayersOfALumbarPuncture) {
+TEST(DeriveStructures, CreateTheLayersOfALumbarPuncture) {
   const LabelledBox box = derived(true);
   std::vector<std::string> crossed;
   for (double y = 55.0; y > 0.0; y -= 0.5) {
@@ -223,7 +223,7 @@ TEST(DeriveStructures, ChangeNothingWithoutAChoice) {
   EXPECT_EQ(before.patient.label_table.labels.size(), after.patient.label_table.labels.size());
 }
 
-TEST(DeriveStructures, KeepWhatTheSegmentationHas) {
+TEST(DeriveStructures, KeepSegmentedStructures) {
   LabelledBox box = make_spine(true);
   box.paint("ligamentum_flavum", [](const Vec3& p) { return (p - Vec3(0.0, 12.0, 70.0)).norm() < 1.5; });
   const std::size_t labelled = box.count("ligamentum_flavum");
@@ -232,7 +232,7 @@ TEST(DeriveStructures, KeepWhatTheSegmentationHas) {
   EXPECT_FALSE(box.patient.label_table.find("ligamentum_flavum")->is_derived);
 }
 
-TEST(DeriveStructures, MakeNothingOfASingleVertebra) {
+TEST(DeriveStructures, CreateNothingForASingleVertebra) {
   LabelledBox box({41, 41, 41}, {0.0, 0.0, 0.0});
   box.paint("vertebrae_L3", [](const Vec3& p) { return (p - Vec3(20.0, 20.0, 20.0)).norm() < 10.0; });
   EXPECT_TRUE(derive_structures(box.patient, box.known, {}).empty());

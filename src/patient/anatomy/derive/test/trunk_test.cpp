@@ -29,7 +29,7 @@ TEST(Peritoneum, IsAThinClosedShellAroundTheCavity) {
   }
 }
 
-TEST(Peritoneum, DoesNotLieBetweenTheOrgansOfTheCavity) {
+TEST(Peritoneum, DoesNotSeparateTheOrgansOfTheCavity) {
   LabelledBox box({121, 81, 81}, {-60.0, -40.0, -40.0}, "fat");
   box.paint("liver", [](const Vec3& p) { return (p - Vec3(-22.0, 0.0, 0.0)).norm() <= 20.0; });
   box.paint("stomach", [](const Vec3& p) { return (p - Vec3(22.0, 0.0, 0.0)).norm() <= 20.0; });
@@ -57,7 +57,7 @@ LabelledBox make_chest() {
   return box;
 }
 
-TEST(PleuralRecess, LiesBetweenWallAndOrganUpTo50MmBelowTheLung) {
+TEST(PleuralRecess, ReachesUpTo50MmBelowTheLung) {
   LabelledBox box = make_chest();
   derive_structures(box.patient, box.known, {false, {"pleural_recess"}});
   double lowest = 1e9, highest = -1e9, nearest = 1e9;
@@ -164,7 +164,7 @@ TEST(NeurovascularBundle, EndsAtAWideGapOfTheRib) {
   EXPECT_EQ(parts.voxel_counts.size(), 2U);
 }
 
-TEST(EpigastricZone, IsTheBackOfTheMuscle4To8CmFromTheMidline) {
+TEST(EpigastricZone, LiesBehindTheMuscle4To8CmFromTheMidline) {
   LabelledBox box({241, 61, 141}, {-120.0, 0.0, 0.0}, "fat");
   box.paint("muscle", [](const Vec3& p) { return p.y() >= 15.0 && p.y() <= 24.0; });
   box.paint("hip_left",
@@ -186,7 +186,7 @@ TEST(EpigastricZone, IsTheBackOfTheMuscle4To8CmFromTheMidline) {
 }
 
 // A portal branch of radius 5 mm along x: the duct has 40 % of it and lies in front (lower y), 0.5 mm from it.
-TEST(BileDucts, RunInFrontOfThePortalVeinWithAShareOfItsRadius) {
+TEST(BileDucts, RunInFrontOfThePortalVeinAtAFractionOfItsRadius) {
   LabelledBox box({61, 41, 41}, {-30.0, -20.0, -20.0});
   box.paint("liver", [](const Vec3& p) { return std::abs(p.x()) <= 28.0; });
   box.paint("portalvein", [](const Vec3& p) { return std::hypot(p.y(), p.z()) <= 5.0 && std::abs(p.x()) <= 28.0; });

@@ -93,7 +93,7 @@ class ExpertPath : public ::testing::TestWithParam<std::uint64_t> {
   Segment line_;
 };
 
-TEST_P(ExpertPath, LeadsThroughFatMuscleAndLiverIntoTheLesion) {
+TEST_P(ExpertPath, PassesFatMuscleAndLiverIntoTheLesion) {
   std::vector<std::string> order;
   double liver_mm = 0.0;
   constexpr double kStepMm = 0.25;
@@ -134,7 +134,7 @@ TEST_P(ExpertPath, PassesBetweenTwoRibs) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ExpertPath, ::testing::Values(1, 2, 3, 4, 5));
 
-TEST(Rendering, IsNotChangedByLeavingOutWhatIsFar) {
+TEST(Rendering, IsUnchangedByCulling) {
   Anatomy anatomy(3, shipped_abdomen(), shipped_structures());
   ASSERT_TRUE(build_abdomen(anatomy));
   // A slab through liver, stomach and spine, and one through bowel and pelvis, with ordinary voxels.

@@ -55,7 +55,7 @@ void expect_layers(const std::string& name, const std::vector<std::pair<std::str
   }
 }
 
-TEST(LayeredScene, LumbarPathMeetsLigamentsEpiduralFatAndFluidAtTheirDepths) {
+TEST(LayeredScene, LumbarPathMeetsLayersAtTheirDepths) {
   expect_layers("layers-lumbar", {{"fat", 0.0F},
                                   {"supraspinous_ligament", data().lumbar.supraspinous},
                                   {"interspinous_ligament", data().lumbar.interspinous},
@@ -65,7 +65,7 @@ TEST(LayeredScene, LumbarPathMeetsLigamentsEpiduralFatAndFluidAtTheirDepths) {
                                   {"epidural_fat", data().lumbar.sac_end}});
 }
 
-TEST(LayeredScene, AscitesPathMeetsWallFluidAndBowelAtTheMeasuredDepths) {
+TEST(LayeredScene, AscitesPathMeetsLayersAtTheirDepths) {
   expect_layers("layers-ascites", {{"fat", 0.0F},
                                    {"muscle", data().ascites.muscle},
                                    {"fat", data().ascites.muscle_end},
@@ -84,7 +84,7 @@ TEST(LayeredScene, LiverPathMeetsWallCapsuleDuctAndVein) {
                                  {"liver", data().liver.vein + data().liver.vein_radius}});
 }
 
-TEST(LayeredScene, PathRunsFromTheSkinInwardsFromTheSideOfItsPuncture) {
+TEST(LayeredScene, PathRunsInwardsFromTheSkin) {
   for (const PhantomInfo& info : layered_scenes()) {
     const VirtualPatient& patient = scene(info.name);
     ASSERT_EQ(patient.paths.size(), 1u);
@@ -96,7 +96,7 @@ TEST(LayeredScene, PathRunsFromTheSkinInwardsFromTheSideOfItsPuncture) {
   }
 }
 
-TEST(LayeredScene, BoneLiesBesideTheLumbarPathAndNotOnIt) {
+TEST(LayeredScene, BoneLiesBesideTheLumbarPath) {
   const VirtualPatient& patient = scene("layers-lumbar");
   const Segment& line = patient.paths[0].line_P;
   double nearest_mm = std::numeric_limits<double>::infinity();
@@ -126,7 +126,7 @@ TEST(LayeredScene, HounsfieldUnitsFitTheLabels) {
   EXPECT_GT(mean["csf"] - mean["epidural_fat"], 60.0);
 }
 
-TEST(LayeredScene, SeedChangesTextureAndNoiseAlone) {
+TEST(LayeredScene, SeedChangesOnlyTextureAndNoise) {
   const PhantomResolution coarse{{40, 70, 40}};
   const VirtualPatient first = *generate_phantom("layers-liver", 3, coarse);
   const VirtualPatient again = *generate_phantom("layers-liver", 3, coarse);
@@ -137,7 +137,7 @@ TEST(LayeredScene, SeedChangesTextureAndNoiseAlone) {
   EXPECT_EQ(first.skin_distance_mm.voxels, other.skin_distance_mm.voxels);
 }
 
-TEST(LayeredScene, UnknownNameIsAUsageErrorThatListsThem) {
+TEST(LayeredScene, UnknownNameListsTheScenes) {
   const auto patient = generate_phantom("layers-knee");
   ASSERT_FALSE(patient);
   EXPECT_EQ(patient.error().exit_status, 2);

@@ -32,7 +32,7 @@ void expect_refused(std::string_view file, const Change& change, const Load& loa
       << data.error().text();
 }
 
-TEST(AbdomenData, HasTheNumbersOfTheFile) {
+TEST(AbdomenData, MatchesTheFile) {
   const auto data = load_abdomen_data(data_dir() / kAbdomenFile);
   ASSERT_TRUE(data) << data.error().text();
   EXPECT_EQ(data->spine.height(0), 230.0F);
@@ -72,7 +72,7 @@ TEST(AbdomenData, EveryKeyIsNeeded) {
   EXPECT_GT(removed, 150);
 }
 
-TEST(AbdomenData, WrongNumbersAreRefusedWithTheirPlace) {
+TEST(AbdomenData, RefusesWrongNumbersWithTheirLocation) {
   for (const Change& change : std::initializer_list<Change>{
            {"outward_mm = 6.3", "outward_mm = nan", "ribs.outward_mm"},
            {"outward_mm = 6.3", "outward_mm = \"6.3\"", "ribs.outward_mm"},
@@ -99,7 +99,7 @@ TEST(AbdomenData, WrongNumbersAreRefusedWithTheirPlace) {
     expect_refused(kAbdomenFile, change, load_abdomen_data);
 }
 
-TEST(LayerData, HasTheNumbersOfTheFile) {
+TEST(LayerData, MatchesTheFile) {
   const auto data = load_layer_data(data_dir() / kLayersFile);
   ASSERT_TRUE(data) << data.error().text();
   EXPECT_EQ(data->lumbar.epidural, 51.2F);
@@ -107,7 +107,7 @@ TEST(LayerData, HasTheNumbersOfTheFile) {
   EXPECT_EQ(data->liver.vein_radius, 4.5F);
 }
 
-TEST(LayerData, WrongNumbersAreRefusedWithTheirPlace) {
+TEST(LayerData, RefusesWrongNumbersWithTheirLocation) {
   for (const Change& change :
        std::initializer_list<Change>{{"dura_mm = 57.2", "", "lumbar.dura_mm"},
                                      {"dura_mm = 57.2", "dura_mm = 75.0", "do not follow each other"},
@@ -117,7 +117,7 @@ TEST(LayerData, WrongNumbersAreRefusedWithTheirPlace) {
     expect_refused(kLayersFile, change, load_layer_data);
 }
 
-TEST(PhantomDataFiles, AMissingFileIsNamedByThePatientThatNeedsIt) {
+TEST(PhantomDataFiles, AreNamedWhenMissing) {
   const OwnDataFolder own;
   own.remove(kAbdomenFile);
   const auto abdomen = generate_phantom("abdomen", 1, kCoarsest);

@@ -68,7 +68,7 @@ std::set<std::string> neighbours_of(const VirtualPatient& patient, const std::st
   return neighbours;
 }
 
-TEST(Phantom, IsTheSameForTheSameSeedAndAnotherForAnother) {
+TEST(Phantom, DependsOnlyOnItsSeed) {
   const VirtualPatient first = generate(7, kCoarse);
   const VirtualPatient again = generate(7, kCoarse);
   const VirtualPatient other = generate(8, kCoarse);
@@ -170,7 +170,7 @@ TEST(Phantom, MeasuresTheDistanceToTheSkin) {
   }
 }
 
-TEST(Phantom, LooksTheSameAtAnotherResolution) {
+TEST(Phantom, IsConsistentAcrossResolutions) {
   auto fine = volumes_ml(medium_patient());
   auto flat = volumes_ml(generate(1, {{150, 130, 60}}));
   for (const std::string name : {"liver", "spleen", "kidney_left", "muscle", "fat", "aorta"})

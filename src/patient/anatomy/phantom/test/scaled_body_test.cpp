@@ -22,7 +22,7 @@ TEST(ScaledBody, MultipliesWithinTheRanges) {
   EXPECT_DOUBLE_EQ(body.weight_kg, 160.0);
 }
 
-TEST(ScaledBody, RefusesWhatIsNoFactor) {
+TEST(ScaledBody, RefusesMalformedFactors) {
   const auto error_of = [](const char* factors) {
     BodyParameters body;
     const Status status = scale_body(body, factors);
@@ -34,7 +34,7 @@ TEST(ScaledBody, RefusesWhatIsNoFactor) {
     EXPECT_NE(error_of(wrong), "no error") << wrong;
 }
 
-TEST(ScaledBody, IsAnotherPatientOfTheSameCase) {
+TEST(ScaledBody, HasANewHashForTheSameCase) {
   PhantomResolution coarse;
   coarse.voxel_mm = 3.0;
   const auto skin_ml = [](const VirtualPatient& patient) {
@@ -51,7 +51,7 @@ TEST(ScaledBody, IsAnotherPatientOfTheSameCase) {
   EXPECT_EQ(generate_phantom("lumbar-1@", 1, coarse)->content_hash, usual->content_hash);
 }
 
-TEST(ScaledBody, BelongsToCasesOnly) {
+TEST(ScaledBody, IsAvailableForCasesOnly) {
   EXPECT_TRUE(has_body("biopsy-3"));
   EXPECT_TRUE(has_body("biopsy-3@weight_kg=1.1"));
   EXPECT_TRUE(has_body(kVariantPatient));

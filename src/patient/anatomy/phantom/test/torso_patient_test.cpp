@@ -80,7 +80,7 @@ class NamedCase : public ::testing::TestWithParam<std::string> {
   const BuiltCase& case_ = built(GetParam());
 };
 
-TEST_P(NamedCase, EveryExpertPathReachesItsTargetAndTouchesNoRisk) {
+TEST_P(NamedCase, ExpertPathsReachTheirTargetsAndAvoidRisks) {
   const std::map<std::string, std::string> targets{{"liver-biopsy", "liver_lesion"},
                                                    {"lumbar-puncture", "csf"},
                                                    {"ascites-puncture", "ascites"},
@@ -117,7 +117,7 @@ TEST_P(NamedCase, LumbarPathsPassTheLigamentsInTheirOrder) {
   }
 }
 
-TEST_P(NamedCase, BehindTheSacANeedleMeetsTheVenousPlexus) {
+TEST_P(NamedCase, VenousPlexusLiesBehindTheSac) {
   if (case_.description.task != "lumbar-puncture") GTEST_SKIP() << "another task";
   for (const NeedlePath& path : case_.plan->paths) {
     std::vector<std::string> order;
@@ -186,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(All, NamedCase, ::testing::ValuesIn(case_names()), [](c
   return name;
 });
 
-TEST(NamedCases, AreFiveOfEachTaskInOrderOfDifficulty) {
+TEST(NamedCases, AreFivePerTaskInOrderOfDifficulty) {
   std::map<std::string, std::vector<int>> difficulties;
   for (const CaseDescription& description : shipped_cases()) {
     difficulties[description.task].push_back(description.difficulty);
@@ -201,7 +201,7 @@ TEST(NamedCases, AreFiveOfEachTaskInOrderOfDifficulty) {
 // 1976, and CT volumetry); spleen 50 to 410 (Prassopoulos et al., Eur Radiol 7:246, 1997: mean 215); kidney 90 to 260
 // (Cheong et al., CJASN 2:38, 2007, MRI: 150 to 200, larger in tall men); gallbladder 12 to 130 (fasting 20 to 50,
 // distended more); lumbar vertebra 30 to 95 with its arch.
-TEST(NamedCases, TheReferralHoldsForTheBodiesOfAllSeeds) {
+TEST(NamedCases, ReferralHoldsForAllSeeds) {
   // Other seeds place other lesions, and smaller ones where there is no room.
   for (const CaseDescription& description : shipped_cases())
     for (const char* word : {" mm", "lobe", "segment"})
@@ -315,7 +315,7 @@ TEST(FreeFluid, FillsTheLowestSpaceForThePosture) {
   EXPECT_NEAR(supine.x(), 0.0, 25.0);
 }
 
-TEST(SpineCurve, StraightensWhatItBends) {
+TEST(SpineCurve, StraightenInvertsBend) {
   const AbdomenData data = load_abdomen_data(data_dir() / kAbdomenFile).value();
   const SpineCurve spine(Vec3f(0.0F, 23.0F, -61.0F), data.spine.inclinations, {0.4F, 0.4F});
   for (const Vec3f& along : {Vec3f(0, 0, -61), Vec3f(20, 40, -95), Vec3f(-30, -15, 50), Vec3f(5, 60, -180)})

@@ -96,13 +96,13 @@ bool has_words(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-TEST(JudgeAnatomy, FindsNothingInARightSegmentation) {
+TEST(JudgeAnatomy, FindsNothingInACorrectSegmentation) {
   const BodyOutcome built = build_body(ct_at(kHere), labels_at(kHere));
   ASSERT_TRUE(built.patient) << built.text();
   EXPECT_FALSE(built.warns_of("--confirm")) << built.warnings.front();
 }
 
-TEST(JudgeAnatomy, MirroredLabelsAreToldFromAMirroredBody) {
+TEST(JudgeAnatomy, DistinguishesMirroredLabelsFromAMirroredBody) {
   const BodyOutcome labels = build_body(ct_at(kHere), labels_at(kMirroredHere));
   EXPECT_TRUE(has_words(labels.text(), "the labels are mirrored")) << labels.text();
   EXPECT_TRUE(has_words(labels.text(), "--mirror labels")) << labels.text();
@@ -111,7 +111,7 @@ TEST(JudgeAnatomy, MirroredLabelsAreToldFromAMirroredBody) {
   EXPECT_TRUE(has_words(both.text(), "--mirror both")) << both.text();
 }
 
-TEST(JudgeAnatomy, AConfirmedFindingIsKeptInTheProvenance) {
+TEST(JudgeAnatomy, KeepsAConfirmedFindingInTheProvenance) {
   const BodyOutcome built = build_body(ct_at(kMirroredHere), labels_at(kMirroredHere), {kMirrored, kShifted});
   ASSERT_TRUE(built.patient) << built.text();
   EXPECT_TRUE(std::ranges::any_of(built.patient->provenance, [](const auto& line) {
@@ -120,7 +120,7 @@ TEST(JudgeAnatomy, AConfirmedFindingIsKeptInTheProvenance) {
   EXPECT_TRUE(built.warns_of("nothing to confirm: there is no finding \"shifted\""));
 }
 
-TEST(JudgeAnatomy, ASavedPatientIsJudgedToo) {
+TEST(JudgeAnatomy, JudgesASavedPatient) {
   BodyOutcome built = build_body(ct_at(kMirroredHere), labels_at(kMirroredHere), {kMirrored});
   ASSERT_TRUE(built.patient) << built.text();
   const auto says_mirrored = [&] {
@@ -132,7 +132,7 @@ TEST(JudgeAnatomy, ASavedPatientIsJudgedToo) {
   EXPECT_TRUE(says_mirrored());
 }
 
-TEST(JudgeAnatomy, TurnedImagesAreRefused) {
+TEST(JudgeAnatomy, RefusesRotatedImages) {
   const Where half_turn = [](const Vec3& p_P) { return Vec3(-p_P.x(), -p_P.y(), p_P.z()); };
   const Where head_down = [](const Vec3& p_P) { return Vec3(p_P.x(), p_P.y(), -p_P.z()); };
   const BodyOutcome turned = build_body(ct_at(half_turn), labels_at(half_turn));
@@ -141,7 +141,7 @@ TEST(JudgeAnatomy, TurnedImagesAreRefused) {
   EXPECT_TRUE(has_words(down.text(), "head and feet are exchanged")) << down.text();
 }
 
-TEST(JudgeAnatomy, LabelsBesideTheirStructuresAreRefusedWithTheWay) {
+TEST(JudgeAnatomy, RefusesShiftedLabelsWithTheOffset) {
   for (const Vec3& way_mm : {Vec3(16, 0, 0), Vec3(0, -12, 0), Vec3(0, 0, 20), Vec3(8, 8, 8)}) {
     const BodyOutcome built = build_body(ct_at(kHere), labels_at([&](const Vec3& p_P) { return Vec3(p_P - way_mm); }));
     ASSERT_TRUE(has_words(built.text(), "beside the structures in the CT")) << way_mm.transpose() << built.text();
@@ -154,7 +154,7 @@ TEST(JudgeAnatomy, LabelsBesideTheirStructuresAreRefusedWithTheWay) {
   }
 }
 
-TEST(JudgeAnatomy, NumbersOfTheOtherVersionAreRefusedWithTheOption) {
+TEST(JudgeAnatomy, RefusesNumbersOfAnotherVersionWithTheOption) {
   // The same file read as TotalSegmentator 2 and 1: numbers by version 1, names by version 2.
   const std::vector<std::pair<std::string, int>> numbers_1 = {{"spleen", 1},
                                                               {"kidney_right", 2},
@@ -210,7 +210,7 @@ TEST(JudgeAnatomy, TheSegmentationOfAnotherCtIsRefused) {
       << built.text();
 }
 
-TEST(JudgeAnatomy, AMissingSpleenIsToldNotRefused) {
+TEST(JudgeAnatomy, WarnsOfAMissingSpleen) {
   const BodyOutcome built = build_body(ct_at(kHere), labels_at(kHere, {"spleen"}));
   ASSERT_TRUE(built.patient) << built.text();
   EXPECT_TRUE(built.warns_of("no label for: spleen (--confirm missing if it is right)"));
@@ -232,7 +232,7 @@ volume::Grid<T> cropped(const volume::Grid<T>& grid) {
   return part;
 }
 
-TEST(JudgeAnatomy, LabelsThatAreReversedAloneAreToldFromATurnedBody) {
+TEST(JudgeAnatomy, DistinguishesReversedLabelsFromARotatedBody) {
   const struct {
     Vec3 signs;
     const char* words;
@@ -246,12 +246,12 @@ TEST(JudgeAnatomy, LabelsThatAreReversedAloneAreToldFromATurnedBody) {
   }
 }
 
-TEST(JudgeAnatomy, LabelsOnTheRightSidesOfAMirroredCtAreRefused) {
+TEST(JudgeAnatomy, RefusesUnmirroredLabelsOnAMirroredCt) {
   const BodyOutcome built = build_body(ct_at(kMirroredHere), labels_at(kHere));
   EXPECT_TRUE(has_words(built.text(), "the labels are mirrored (steps of")) << built.text();
 }
 
-TEST(JudgeAnatomy, AMirroringThatWasAskedForIsNotAdvisedAgain) {
+TEST(JudgeAnatomy, DoesNotAdviseARequestedMirroringAgain) {
   for (const auto mirroring : {Mirroring::kLabels, Mirroring::kBoth}) {
     std::vector<std::string> warnings;
     BuildOptions options;
@@ -265,7 +265,7 @@ TEST(JudgeAnatomy, AMirroringThatWasAskedForIsNotAdvisedAgain) {
   }
 }
 
-TEST(JudgeAnatomy, ACtWithoutSkinIsRefusedOrItsSidesAreTakenWhenToldSo) {
+TEST(JudgeAnatomy, RefusesACtWithoutSkinUnlessConfirmedAsCropped) {
   const volume::CtGrid ct = cropped(ct_at(kHere));
   LabelSource labels = labels_at(kHere);
   labels.labels = cropped(labels.labels);
@@ -295,7 +295,7 @@ void add_table(volume::CtGrid& ct, const Vec3& down, double away_mm, std::int16_
   }
 }
 
-TEST(JudgeAnatomy, TheTableTellsThePosture) {
+TEST(JudgeAnatomy, DerivesThePostureFromTheTable) {
   const struct {
     Vec3 down;
     double away_mm;
@@ -311,7 +311,7 @@ TEST(JudgeAnatomy, TheTableTellsThePosture) {
   }
 }
 
-TEST(JudgeAnatomy, AScanWithoutAClearTableTellsNoPosture) {
+TEST(JudgeAnatomy, FindsNoPostureWithoutAClearTable) {
   volume::CtGrid ct = ct_at(kHere);
   EXPECT_FALSE(find_scanned_posture(ct, find_body(ct)));
   // Something on both sides, as two arms, or only in a third of the slices, as a hand.
@@ -326,7 +326,7 @@ TEST(JudgeAnatomy, AScanWithoutAClearTableTellsNoPosture) {
   EXPECT_FALSE(find_scanned_posture(hand, find_body(hand)));
 }
 
-TEST(JudgeAnatomy, AProneScanIsToldAndConfirmedOrBuiltProne) {
+TEST(JudgeAnatomy, WarnsOfAProneScanUntilConfirmedOrBuiltProne) {
   volume::CtGrid ct = ct_at(kHere);
   add_table(ct, {0, -1, 0}, 102);
   const BodyOutcome told = build_body(ct, labels_at(kHere));
@@ -344,7 +344,7 @@ LabelSource with_exchanged(const std::string& a, const std::string& b) {
   return labels;
 }
 
-TEST(JudgeAnatomy, ExchangedNamesAreRefusedOrTold) {
+TEST(JudgeAnatomy, RefusesOrReportsExchangedNames) {
   const BodyOutcome refused = build_body(ct_at(kHere), with_exchanged("liver", "spleen"));
   EXPECT_TRUE(has_words(refused.text(), "liver on the left, spleen on the right")) << refused.text();
   EXPECT_TRUE(has_words(refused.text(), "--confirm places")) << refused.text();
@@ -354,7 +354,7 @@ TEST(JudgeAnatomy, ExchangedNamesAreRefusedOrTold) {
   EXPECT_TRUE(told.warns_of("aorta right of the inferior vena cava"));
 }
 
-TEST(JudgeAnatomy, AStructureOfGasOrBoneIsTold) {
+TEST(JudgeAnatomy, WarnsOfAStructureOfGasOrBone) {
   volume::CtGrid gas = ct_at(kHere), bone = gas;
   for (std::size_t n = 0; n < gas.voxels.size(); ++n) {
     const Vec3 p_P = gas.geometry.centre_mm(gas.geometry.index_of(n));
@@ -365,7 +365,7 @@ TEST(JudgeAnatomy, AStructureOfGasOrBoneIsTold) {
   EXPECT_TRUE(build_body(bone, labels_at(kHere), {kShifted}).warns_of("% of it is as dense as bone"));
 }
 
-TEST(JudgeAnatomy, ScatteredLongAndBallShapedStructuresAreTold) {
+TEST(JudgeAnatomy, WarnsOfImplausibleShapes) {
   LabelSource scattered = labels_at(kHere), ball = labels_at(kHere);
   for (std::size_t n = 0; n < scattered.labels.voxels.size(); ++n) {
     const Vec3 p_P = scattered.labels.geometry.centre_mm(scattered.labels.geometry.index_of(n));
@@ -382,7 +382,7 @@ TEST(JudgeAnatomy, ScatteredLongAndBallShapedStructuresAreTold) {
   EXPECT_TRUE(as_ball.warns_of("aorta is no tube")) << as_ball.text();
 }
 
-TEST(JudgeAnatomy, OneMovedOrganIsRefusedWithTheWay) {
+TEST(JudgeAnatomy, RefusesAMovedOrganWithTheOffset) {
   for (const char* name : {"liver", "spleen", "kidney_left", "vertebrae_L2"}) {
     LabelSource labels = labels_at(kHere, {name});
     const auto ball = std::ranges::find_if(balls(), [&](const Ball& b) { return name == std::string_view(b.name); });
@@ -395,7 +395,7 @@ TEST(JudgeAnatomy, OneMovedOrganIsRefusedWithTheWay) {
   }
 }
 
-TEST(JudgeAnatomy, FewStructuresAreEnoughToFindAMirroredOrTurnedBody) {
+TEST(JudgeAnatomy, DetectsAMirroredOrRotatedBodyFromFewStructures) {
   const std::vector<std::string> without{"stomach",         "gallbladder",  "aorta",        "inferior_vena_cava",
                                          "urinary_bladder", "vertebrae_L1", "vertebrae_L2", "vertebrae_L3"};
   const BodyOutcome mirrored = build_body(ct_at(kMirroredHere), labels_at(kMirroredHere, without));
@@ -409,7 +409,7 @@ TEST(JudgeAnatomy, FewStructuresAreEnoughToFindAMirroredOrTurnedBody) {
   EXPECT_TRUE(build_body(ct_at(kHere), labels_at(kHere, without)).patient);
 }
 
-TEST(JudgeAnatomy, AVoxelSizeThatIsWrongIsRefused) {
+TEST(JudgeAnatomy, RefusesAWrongVoxelSize) {
   volume::CtGrid ct = ct_at(kHere);
   LabelSource labels = labels_at(kHere);
   ct.geometry.spacing_mm *= 0.4;
@@ -418,7 +418,7 @@ TEST(JudgeAnatomy, AVoxelSizeThatIsWrongIsRefused) {
   EXPECT_TRUE(has_words(small.text(), "check the size of the voxels")) << small.text();
 }
 
-TEST(JudgeAnatomy, OrgansOutsideTheBodyAreThoseOfAnotherPatient) {
+TEST(JudgeAnatomy, RefusesOrgansOutsideTheBody) {
   const BodyOutcome built =
       build_body(ct_at(kHere), labels_at([](const Vec3& p_P) { return Vec3(p_P - Vec3(0, 70, 0)); }));
   EXPECT_TRUE(has_words(built.text(), "of the labels lie outside the body")) << built.text();

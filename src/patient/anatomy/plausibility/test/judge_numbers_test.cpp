@@ -108,7 +108,7 @@ std::vector<AnatomyFinding> found_of(const Meaning& drawn, const std::vector<Oth
   return found_in(adult(), source);
 }
 
-TEST(JudgeNumbers, OfOtherDataSetsAreRefusedWithTheirName) {
+TEST(JudgeNumbers, RefusesNumbersOfAnotherDataSetByName) {
   for (const auto& [name, meaning] : {std::pair("btcv", kBtcv), std::pair("chaos", kChaos), std::pair("word", kWord)}) {
     std::vector<OtherReading> others;
     if (meaning.size() == 4)
@@ -122,7 +122,7 @@ TEST(JudgeNumbers, OfOtherDataSetsAreRefusedWithTheirName) {
   }
 }
 
-TEST(JudgeNumbers, SeveralThatFitAreNamedWithoutARepair) {
+TEST(JudgeNumbers, NamesSeveralMatchingDataSetsWithoutARepair) {
   // A liver alone is as well the liver of two data sets.
   const std::vector<NumberedBall> balls = adult();
   const Meaning one{{1, "liver"}, {2, "gallbladder"}};
@@ -156,7 +156,7 @@ TEST(JudgeNumbers, VertebraeReadAsBowelAndBladderAreRefused) {
   EXPECT_EQ(findings.front().repair, "--label-map verse");
 }
 
-TEST(JudgeNumbers, ThatFitNothingAreRefusedWithoutARepair) {
+TEST(JudgeNumbers, RefusesUnknownNumbersWithoutARepair) {
   // Every structure has the name of another one.
   const std::vector<NumberedBall> balls = adult();
   Meaning drawn, read;
@@ -173,7 +173,7 @@ TEST(JudgeNumbers, ThatFitNothingAreRefusedWithoutARepair) {
   EXPECT_TRUE(found_in(balls, own).empty());
 }
 
-TEST(JudgeNumbers, RightOnesAreNotDoubted) {
+TEST(JudgeNumbers, AcceptsCorrectNumbers) {
   Meaning all;
   for (const NumberedBall& ball : adult()) all.emplace_back(ball.number, ball.name);
   const std::vector<OtherReading> others{{"btcv", "BTCV", kBtcv}, {"chaos", "CHAOS", kChaos}, {"word", "WORD", kWord}};

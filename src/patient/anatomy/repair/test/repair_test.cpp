@@ -35,7 +35,7 @@ std::vector<std::string> doubts(const LabelledBox& box) {
 
 using Texts = std::vector<std::string>;
 
-TEST(Repair, LeavesASoundSegmentationAlone) {
+TEST(Repair, KeepsASoundSegmentation) {
   LabelledBox box = make_segmentation();
   box.paint("kidney_left", ball({30.0, 0.0, 0.0}, 10.0));
   box.paint("kidney_right", ball({-30.0, 0.0, 0.0}, 10.0));
@@ -47,7 +47,7 @@ TEST(Repair, LeavesASoundSegmentationAlone) {
   EXPECT_EQ(doubts(box), Texts{});
 }
 
-TEST(Repair, FillsHolesAndSaysHowMuch) {
+TEST(Repair, FillsHolesAndReportsTheirVolume) {
   LabelledBox box = make_segmentation();
   box.paint("sacrum", ball(Vec3::Zero(), 20.0));
   const std::size_t whole = box.count("sacrum");
@@ -61,7 +61,7 @@ TEST(Repair, FillsHolesAndSaysHowMuch) {
   EXPECT_EQ(box.count("sacrum"), whole);
 }
 
-TEST(Repair, LeavesALargeHoleOpenAndSaysSo) {
+TEST(Repair, LeavesALargeHoleOpenAndReportsIt) {
   LabelledBox box = make_segmentation();
   box.paint("liver", ball(Vec3::Zero(), 24.0));
   box.paint("", ball({0.0, 0.0, 3.0}, 9.0));  // a cyst of 3 ml without a label
@@ -70,7 +70,7 @@ TEST(Repair, LeavesALargeHoleOpenAndSaysSo) {
   EXPECT_EQ(box.count("liver"), drawn);
 }
 
-TEST(Repair, KeepsWhatLiesInAnOrgan) {
+TEST(Repair, KeepsALesionInsideAnOrgan) {
   LabelledBox box = make_segmentation();
   box.paint("liver", ball(Vec3::Zero(), 20.0));
   box.paint("liver_tumor", ball(Vec3::Zero(), 5.0));
@@ -104,7 +104,7 @@ TEST(Repair, KeepsTheRimOfALesion) {
   EXPECT_EQ(box.count("liver"), liver);
 }
 
-TEST(Repair, GivesAVertebrasIslandToTheVertebraItLiesIn) {
+TEST(Repair, RelabelsAnIslandInsideAnotherVertebra) {
   LabelledBox box = make_segmentation();
   box.paint("vertebrae_L3", ball({0.0, 0.0, 25.0}, 15.0));
   box.paint("vertebrae_L4", ball({0.0, 0.0, -25.0}, 15.0));
@@ -141,7 +141,7 @@ TEST(Repair, RelabelsAPartOnTheOtherSide) {
   EXPECT_EQ(box.name_at({-30.0, 0.0, 20.0}), "kidney_right");
 }
 
-TEST(Repair, DoesNotExchangeTheSidesOfAMirroredImage) {
+TEST(Repair, DoesNotExchangeSidesOfAMirroredImage) {
   LabelledBox box = make_segmentation();
   for (const char* name : {"kidney", "adrenal_gland", "hip", "gluteus_maximus"}) {
     const double z = 20.0 * static_cast<double>(name[0] - 'i') / 3.0;
@@ -163,7 +163,7 @@ LabelledBox make_rib(double gap_mm, std::int16_t hu) {
   return box;
 }
 
-TEST(Repair, JoinsARibThatIsCutOffBeforeTheSpine) {
+TEST(Repair, JoinsARibThatEndsBeforeTheSpine) {
   LabelledBox box = make_rib(10.0, 300);
   EXPECT_EQ(repair(box), Texts{"joined rib_left_9 and vertebrae_T9 across a gap of 10 mm"});
   for (double x = -13.0; x <= 0.0; x += 1.0)
@@ -171,7 +171,7 @@ TEST(Repair, JoinsARibThatIsCutOffBeforeTheSpine) {
   EXPECT_EQ(doubts(box), Texts{});
 }
 
-TEST(Repair, LeavesAGapWithoutBoneOrALongOneAsADoubt) {
+TEST(Repair, ReportsLongOrBonelessRibGaps) {
   LabelledBox soft = make_rib(10.0, 20);
   EXPECT_EQ(repair(soft), Texts{});
   EXPECT_EQ(doubts(soft), Texts{"rib_left_9 ends 10 mm from vertebrae_T9"});
@@ -203,7 +203,7 @@ TEST(SegmentationDoubts, NameVertebraeThatMayBeMixed) {
   })) << texts.front();
 }
 
-TEST(SegmentationDoubts, NameVertebraeOutOfOrderAndStructuresInTwoParts) {
+TEST(SegmentationDoubts, NameMisorderedVertebraeAndSplitStructures) {
   LabelledBox box = make_segmentation();
   box.paint("vertebrae_L2", ball({-30.0, 0.0, -25.0}, 10.0));
   box.paint("vertebrae_L3", ball({-30.0, 0.0, 25.0}, 10.0));

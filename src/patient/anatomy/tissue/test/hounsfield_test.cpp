@@ -26,14 +26,14 @@ std::string doubt(const volume::CtGrid& ct) {
   return status ? "believed" : status.error().text();
 }
 
-TEST(Hounsfield, BelievesACt) {
+TEST(Hounsfield, AcceptsACt) {
   EXPECT_EQ(doubt(torso_ct()), "believed");
   // Padding outside of the field of view, and contrast agent in much of the body.
   EXPECT_EQ(doubt(changed_ct([](int hu) { return hu == Torso::kAir ? -3024 : hu; })), "believed");
   EXPECT_EQ(doubt(changed_ct([](int hu) { return hu == Torso::kMuscle ? 180 : hu; })), "believed");
 }
 
-TEST(Hounsfield, DoubtsACtWithoutItsRescaleTags) {
+TEST(Hounsfield, RejectsACtWithoutItsRescaleTags) {
   const std::string text = doubt(changed_ct([](int hu) { return hu + 1024; }));
   EXPECT_NE(text.find("no air"), std::string::npos) << text;
   EXPECT_NE(text.find("24 to 1174"), std::string::npos) << text;
@@ -42,29 +42,29 @@ TEST(Hounsfield, DoubtsACtWithoutItsRescaleTags) {
   EXPECT_NE(doubt(changed_ct([](int hu) { return hu == Torso::kAir ? -2000 : hu + 1024; })), "believed");
 }
 
-TEST(Hounsfield, DoubtsAnInterceptAppliedTwice) {
+TEST(Hounsfield, RejectsAnInterceptAppliedTwice) {
   EXPECT_NE(doubt(changed_ct([](int hu) { return hu - 1024; })), "believed");
 }
 
-TEST(Hounsfield, DoubtsAWindowOfEightBits) {
+TEST(Hounsfield, RejectsAnEightBitWindow) {
   EXPECT_NE(doubt(changed_ct([](int hu) { return std::clamp((hu + 160) * 255 / 400, 0, 255); })), "believed");
   EXPECT_NE(doubt(changed_ct([](int hu) { return std::clamp(hu, -160, 240); })), "believed");
 }
 
-TEST(Hounsfield, DoubtsOneValueAndNoise) {
+TEST(Hounsfield, RejectsConstantAndNoiseImages) {
   EXPECT_NE(doubt(changed_ct([](int) { return 0; })), "believed");
   EXPECT_NE(
       doubt(changed_ct([n = 0U](int) mutable { return static_cast<int>((n = n * 1664525U + 1013904223U) >> 20); })),
       "believed");
 }
 
-TEST(Hounsfield, AScaleMakesHuOfStoredNumbers) {
+TEST(Hounsfield, RescaleConvertsStoredNumbersToHu) {
   volume::CtGrid ct = changed_ct([](int hu) { return 2 * (hu + 1024); });
   ASSERT_TRUE(apply_rescale({0.5, -1024.0}, ct));
   EXPECT_EQ(ct.voxels, torso_ct().voxels);
 }
 
-TEST(Hounsfield, AScaleThatCannotBeIsRefused) {
+TEST(Hounsfield, RefusesAnImpossibleRescale) {
   for (const Rescale& rescale :
        {Rescale{0.0, 0.0}, Rescale{std::nan(""), 0.0}, Rescale{1.0, INFINITY}, Rescale{1e9, 0.0}}) {
     volume::CtGrid ct = torso_ct();
@@ -76,7 +76,7 @@ TEST(Hounsfield, AScaleThatCannotBeIsRefused) {
   EXPECT_FALSE(apply_rescale({1000.0, 0.0}, ct));
 }
 
-TEST(Hounsfield, NoPatientIsBuiltOfOtherNumbers) {
+TEST(Hounsfield, BuildsNoPatientFromNonHuNumbers) {
   std::vector<std::string> warnings;
   const LabelSource liver{"liver.nii.gz", Torso::mask(Torso::grid({5, 5, 6}), Torso::is_liver), {{1, "liver"}}};
   ASSERT_TRUE(build_patient(torso_ct(), {liver}, {"test", {}}, warnings));

@@ -29,7 +29,7 @@ void expect_law(const HuLaw& law, const HuLaw& expected) {
   for (const auto& field : kHuLawFields) EXPECT_DOUBLE_EQ(law.*field.member, expected.*field.member) << field.name;
 }
 
-TEST(HuTransfer, GivesTheKnotsLawsAtTheKnots) {
+TEST(HuTransfer, MatchesTheKnotsAtTheKnots) {
   const HuTransfer transfer = make_transfer();
   for (std::size_t n = 0; n < transfer.knot_count; ++n) expect_law(transfer.at(transfer.hu[n]), transfer.laws[n]);
 }
@@ -40,7 +40,7 @@ TEST(HuTransfer, IsLinearBetweenKnots) {
   expect_law(transfer.at(12.5), {3.5, 3.0, 4.0, 6.5, 0.15, 0.025, 0.35, 20.0});
 }
 
-TEST(HuTransfer, IsConstantBeyondTheOutermostKnotsAndForNaN) {
+TEST(HuTransfer, IsConstantBeyondTheKnotsAndForNaN) {
   const HuTransfer transfer = make_transfer();
   constexpr double kInf = std::numeric_limits<double>::infinity();
   for (const double hu : {-100.001, -1e300, -kInf, std::nan("")}) expect_law(transfer.at(hu), transfer.laws[0]);
@@ -67,7 +67,7 @@ double border_peak_n(const HuTransfer& transfer, double from_hu, double to_hu, d
   return peak_n;
 }
 
-TEST(HuTransfer, ShippedBordersAreFeltAsStrongAsTheTissueBehindThem) {
+TEST(HuTransfer, ShippedBordersMatchTheTissueBehindThem) {
   const auto table = load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(table) << table.error().text();
   const double muscle_n = table->layers[*table->find_layer("muscle")].puncture_force_n;

@@ -24,14 +24,14 @@ Result<TissueTable> load_changed_transfer(const std::string& from, const std::st
   return parse_tissue_table(text, "mine.toml");
 }
 
-TEST(HuTransferText, ShippedCurvesHaveKnotsThatRiseAndThresholdsInOrder) {
+TEST(HuTransferText, ShippedCurvesHaveOrderedKnotsAndThresholds) {
   const HuTransfer transfer = shipped_tissues().transfer;
   ASSERT_GE(transfer.knot_count, 8u);
   for (std::size_t n = 1; n < transfer.knot_count; ++n) EXPECT_GT(transfer.hu[n], transfer.hu[n - 1]);
   EXPECT_LT(transfer.gradient_none_hu_per_mm, transfer.gradient_full_hu_per_mm);
 }
 
-TEST(HuTransferText, GasIsNothingAndCompactBoneStopsEveryDevice) {
+TEST(HuTransferText, GasHasNoForceAndCompactBoneStopsEveryDevice) {
   const HuTransfer transfer = shipped_tissues().transfer;
   for (const double hu : {-1000.0, -500.0, -250.0}) {
     EXPECT_EQ(transfer.at(hu).normal_n, 0.0) << hu;
@@ -61,7 +61,7 @@ TEST(HuTransferText, ATableWithoutTheSectionLoads) {
   EXPECT_EQ(table->to_toml().find("[transfer]"), std::string::npos);
 }
 
-TEST(HuTransferText, DamagedCurvesAreRefusedWithTheirPlace) {
+TEST(HuTransferText, RefusesDamagedCurvesWithTheirLocation) {
   const HuTransfer transfer = shipped_tissues().transfer;
   const std::string second_knot = config::TomlValue(transfer.hu[1]).text();
   std::string too_many = "hu = [-1001";
@@ -142,7 +142,7 @@ TEST(HuTransferText, UnusableOverridesChangeNothing) {
   EXPECT_FALSE(apply_override(without, "transfer.scale=2"));
 }
 
-TEST(HuTransferText, ATableStoredBeforeYoungsModulusLoadsAndAFileWithoutItDoesNot) {
+TEST(HuTransferText, YoungsModulusIsOptionalOnlyInOldStoredTables) {
   std::string text = shipped_tissues().to_toml();
   const auto drop_young = [&](std::string& t) {
     constexpr std::string_view kRow = "\nyoung_kpa";

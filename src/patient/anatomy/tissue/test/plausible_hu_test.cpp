@@ -24,22 +24,22 @@ std::vector<std::string> doubts_of(const std::vector<std::pair<std::string, doub
   return texts;
 }
 
-TEST(ImplausibleHu, IsQuietAboutAnOrdinaryPatient) {
+TEST(ImplausibleHu, AcceptsAnOrdinaryPatient) {
   EXPECT_TRUE(doubts_of({{"bone", 350}, {"liver", 105}, {"lung", -840}, {"kidney", 180}, {"bowel", -200}}).empty());
 }
 
-TEST(ImplausibleHu, NamesTheLabelThatCannotBe) {
+TEST(ImplausibleHu, NamesAnImplausibleLabel) {
   const auto doubts = doubts_of({{"bone", 20}, {"liver", 105}});
   ASSERT_EQ(doubts.size(), 1u);
   EXPECT_NE(doubts[0].find("bone1"), std::string::npos);
 }
 
-TEST(ImplausibleHu, NamesEachLabelThatCannotBe) {
+TEST(ImplausibleHu, NamesEachImplausibleLabel) {
   const auto doubts = doubts_of({{"bone", 20}, {"liver", -300}, {"lung", 40}, {"spleen", -100}, {"kidney", 30}});
   EXPECT_EQ(doubts.size(), 4u);
 }
 
-TEST(ImplausibleHu, DoesNotJudgeCrumbs) {
+TEST(ImplausibleHu, IgnoresTinyLabels) {
   EXPECT_TRUE(doubts_of({{"bone", 20}}, 0.2).empty());
 }
 

@@ -21,7 +21,7 @@ const TissueParameter* find(const std::vector<TissueParameterGroup>& groups, std
   return nullptr;
 }
 
-TEST(TissueParameters, OverrideOfEachIsReadBackAsIt) {
+TEST(TissueParameters, RoundTripThroughTheirOverrides) {
   const TissueTable table = shipped_tissues();
   for (const auto& group : tissue_parameters(table)) {
     std::set<std::string_view> keys;
@@ -52,7 +52,7 @@ TEST(TissueParameters, OverrideOfEachIsReadBackAsIt) {
   }
 }
 
-TEST(TissueParameters, HaveTheNumbersOfTableOneOfPaperA) {
+TEST(TissueParameters, MatchTable1OfPaperA) {
   const auto groups = tissue_parameters(shipped_tissues());
   const std::tuple<const char*, const char*, double> table_1[] = {
       {"skin", "k", 0.46},     {"skin", "nu", 0.02},   {"skin", "mu", 0.18},  {"skin", "dx", 0.1},

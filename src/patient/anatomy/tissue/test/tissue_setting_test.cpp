@@ -9,7 +9,7 @@
 namespace trocar::anatomy {
 namespace {
 
-TEST(TissueSetting, TextReadsBackToTheSameSetting) {
+TEST(TissueSetting, RoundTripsThroughText) {
   const double never = std::numeric_limits<double>::infinity();
   for (const TissueSetting& setting : {TissueSetting{"liver", "k", 0.1 + 0.2}, TissueSetting{"layers.skin", "nu", 1e-9},
                                        TissueSetting{"muscle", "fp", never}}) {
@@ -21,7 +21,7 @@ TEST(TissueSetting, TextReadsBackToTheSameSetting) {
   EXPECT_EQ(to_string(TissueSetting{"muscle", "fp", never}), "muscle.fp=never");
 }
 
-TEST(TissueSetting, AnotherFormIsAUsageError) {
+TEST(TissueSetting, RefusesMalformedText) {
   for (const char* bad : {"", "liver", "liver=1", "liver.k", "liver.k=", "liver.k=x", "liver.k=0.5x", "liver.k=nan"}) {
     const auto setting = parse_setting(bad);
     ASSERT_FALSE(setting) << bad;
@@ -29,7 +29,7 @@ TEST(TissueSetting, AnotherFormIsAUsageError) {
   }
 }
 
-TEST(TissueSetting, ChangesATableAsItsTextDoes) {
+TEST(TissueSetting, ChangesATableLikeItsText) {
   const auto shipped = load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(shipped) << shipped.error().text();
   for (const char* text : {"liver.k=0.5", "layers.vessel.nu=0.03", "tissues.vessel.nu=0.01", "transfer.tn_factor=2",
@@ -41,7 +41,7 @@ TEST(TissueSetting, ChangesATableAsItsTextDoes) {
   }
 }
 
-TEST(TissueSetting, RefusesValuesThatNoTextHas) {
+TEST(TissueSetting, RefusesUnrepresentableValues) {
   auto table = load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(table);
   const std::string before = table->to_toml();

@@ -19,7 +19,7 @@ TissueTable with(TissueTable table, const Settings& settings) {
   return table;
 }
 
-TEST(TissueSettings, NameWhatMakesOneTableOfAnother) {
+TEST(TissueSettings, ListTheDifferencesOfTwoTables) {
   const TissueTable table = shipped_tissues();
   EXPECT_TRUE(changed_settings(table, table).empty());
   const Settings settings{"skin.fp=6",   "tissues.liver.nu=0.011", "bone.fp=50",
@@ -33,7 +33,7 @@ TEST(TissueSettings, NameWhatMakesOneTableOfAnother) {
   EXPECT_EQ(changed_settings(other, with(other, {"bone.fp=never"})), Settings{"bone.fp=never"});
 }
 
-TEST(TissueSettings, OfTheUserAreThoseThatWereSet) {
+TEST(TissueSettings, OfTheUserListOnlyExplicitSettings) {
   const TissueTable table = shipped_tissues();
   EXPECT_TRUE(user_settings(table).empty());
   EXPECT_EQ(user_settings(with(table, {"skin.fp=6"})), Settings{"skin.fp=6"});
@@ -42,7 +42,7 @@ TEST(TissueSettings, OfTheUserAreThoseThatWereSet) {
   EXPECT_EQ(user_settings(*stored), Settings{"skin.fp=6"});
 }
 
-TEST(TissueSettings, SayThatATableWasReplaced) {
+TEST(TissueSettings, ReportAReplacedTable) {
   TissueTable other = shipped_tissues();
   other.layers.front().name = "hide";
   EXPECT_EQ(changed_settings(shipped_tissues(), other), Settings{"tissues=replaced"});

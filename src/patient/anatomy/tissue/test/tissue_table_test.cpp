@@ -128,7 +128,7 @@ TEST(TissueTable, HoldsTable1OfPaperAAsPrinted) {
   }
 }
 
-TEST(TissueTable, EveryNumberHasASourceAndEveryAssumedFiniteNumberARange) {
+TEST(TissueTable, EveryNumberHasASourceAndAssumedOnesARange) {
   constexpr std::size_t kOptionalNumbers = 4;  // the needles of ligamentum flavum and dura, two of the skin
   for (const std::string_view profile : {"paper-a", "tented"}) {
     const TissueTable table = shipped_tissues(profile);
@@ -146,7 +146,7 @@ TEST(TissueTable, EveryNumberHasASourceAndEveryAssumedFiniteNumberARange) {
   }
 }
 
-TEST(TissueTable, CoversTheVocabularyAndTheLayersItCarries) {
+TEST(TissueTable, CoversTheVocabularyAndItsLayers) {
   const TissueTable table = shipped_tissues();
   const std::map<std::string, std::string> layer_of = {{"skin", "skin"},
                                                        {"muscle", "muscle"},
@@ -215,7 +215,7 @@ TEST(TissueTable, RefusesAPathConstraintOutOfRange) {
 }
 
 // Depths and slopes that were computed from Table 1 outside of this program (static, 18 G).
-TEST(TissueTable, PaperProfilePuncturesAsStiffAsTable1Says) {
+TEST(TissueTable, PaperProfileMatchesTable1Stiffness) {
   const TissueTable table = shipped_tissues("paper-a");
   struct Expected {
     std::string_view name;
@@ -229,7 +229,7 @@ TEST(TissueTable, PaperProfilePuncturesAsStiffAsTable1Says) {
   }
 }
 
-TEST(TissueTable, TentedProfileIndents4To5MillimetresWithAtMost1Point5NewtonAMillimetre) {
+TEST(TissueTable, TentedProfileIndents4To5MmBelow1500NPerM) {
   const TissueTable table = shipped_tissues("tented");
   const TissueTable paper = shipped_tissues("paper-a");
   for (const std::string_view name : {"skin", "muscle", "liver_capsule"}) {
@@ -242,7 +242,7 @@ TEST(TissueTable, TentedProfileIndents4To5MillimetresWithAtMost1Point5NewtonAMil
   }
 }
 
-TEST(TissueTable, ProfilesAreListedAndAnUnknownOneIsAUsageError) {
+TEST(TissueTable, UnknownProfileListsTheProfiles) {
   EXPECT_EQ(tissue_profiles(data_dir() / "tissues.toml"), (std::vector<std::string>{"paper-a", "tented"}));
   const auto table = load_tissue_table(data_dir() / "tissues.toml", "soft");
   ASSERT_FALSE(table);
@@ -250,7 +250,7 @@ TEST(TissueTable, ProfilesAreListedAndAnUnknownOneIsAUsageError) {
   EXPECT_NE(table.error().text().find("paper-a, tented"), std::string::npos);
 }
 
-TEST(TissueTable, TextReadsBackToTheSameBits) {
+TEST(TissueTable, RoundTripsBitwiseThroughText) {
   Random random(5);
   for (const std::string_view profile : {"paper-a", "tented"}) {
     TissueTable table = shipped_tissues(profile);
@@ -296,7 +296,7 @@ TEST(TissueTable, OverrideReachesTissueLayerOrBoth) {
   expect_same(*stored, table);
 }
 
-TEST(TissueTable, OverrideOfARowReachesThatRowAlone) {
+TEST(TissueTable, OverrideOfARowChangesOnlyThatRow) {
   TissueTable table = shipped_tissues();
   ASSERT_TRUE(apply_override(table, "layers.vessel.nu=0.03"));
   EXPECT_EQ(layer(table, "vessel").viscosity_ns_per_mm, 0.03);
@@ -323,7 +323,7 @@ TEST(TissueTable, OverrideScalesACurveOverHu) {
   expect_same(*stored, table);
 }
 
-TEST(TissueTable, UnusableOverrideIsAUsageErrorAndChangesNothing) {
+TEST(TissueTable, RefusesAnUnusableOverrideUnchanged) {
   const TissueTable before = shipped_tissues();
   for (const char* bad : {"",
                           "liver",
@@ -363,7 +363,7 @@ TEST(TissueTable, UnusableOverrideIsAUsageErrorAndChangesNothing) {
   }
 }
 
-TEST(TissueTable, OnlyATissueWithALayerListsItsKeys) {
+TEST(TissueTable, ListsLayerKeysOnlyForATissueWithALayer) {
   const auto advice_for = [](const char* text) {
     TissueTable table = shipped_tissues();
     const Status status = apply_override(table, text);
@@ -384,7 +384,7 @@ TEST(TissueTable, ReadsTheTextOfOlderVersions) {
   expect_same(*read, table);
 }
 
-TEST(TissueTable, DamagedTableIsRefusedWithItsPlace) {
+TEST(TissueTable, RefusesADamagedTableWithItsLocation) {
   const std::string good = shipped_tissues().to_toml();
   const auto refused = [&](const std::string& from, const std::string& to) {
     std::string text = good;

@@ -35,7 +35,7 @@ std::shared_ptr<const HapticScene> scene_for(const DevicePreset& preset, const s
 
 class RestInTheHand : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(RestInTheHand, ComesAndTakesNoEnergy) {
+TEST_P(RestInTheHand, IsReachedWithoutEnergyGrowth) {
   const DevicePreset preset = device(GetParam());
   const auto scene = scene_for(preset, liver_way());
   for (const Holder holder : {Holder::kHand, Holder::kGuidingHand}) {
@@ -52,7 +52,7 @@ TEST_P(RestInTheHand, ComesAndTakesNoEnergy) {
 }
 INSTANTIATE_TEST_SUITE_P(Devices, RestInTheHand, ::testing::Values("premium", "omni", "omega6", "sigma7", "falcon"));
 
-TEST(Rest, ComesToABareMassOnThePath) {
+TEST(Rest, IsReachedByABareMassOnThePath) {
   const DevicePreset preset = device("omega6");
   const auto scene = scene_for(preset, liver_way());
   for (const Holder holder : {Holder::kBare45g, Holder::kBare150g}) {
@@ -61,7 +61,7 @@ TEST(Rest, ComesToABareMassOnThePath) {
   }
 }
 
-TEST(PassivityObserver, DoesNotCountTheWorkAgainstTheWeightThatIsCarried) {
+TEST(PassivityObserver, ExcludesWorkAgainstTheCompensatedWeight) {
   const DevicePreset preset = device("premium");
   ClosedLoop loop(scene_for(preset, liver_way()), preset, Holder::kBare150g);
   for (int i = 0; i < 10; ++i) loop.carry({0.0, 0.0, -40.0}, Vec3::UnitZ());
@@ -80,7 +80,7 @@ TEST(PassivityObserver, DoesNotCountTheWorkAgainstTheWeightThatIsCarried) {
 
 class RestOnThePath : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(RestOnThePath, ComesToABareMassOnADeviceWithTorque) {
+TEST_P(RestOnThePath, IsReachedByABareMassOnADeviceWithTorque) {
   const DevicePreset preset = device(GetParam());
   ASSERT_TRUE(preset.has_torque());
   const auto scene = scene_for(preset, liver_way());
@@ -91,7 +91,7 @@ TEST_P(RestOnThePath, ComesToABareMassOnADeviceWithTorque) {
 }
 INSTANTIATE_TEST_SUITE_P(Devices, RestOnThePath, ::testing::Values("premium", "sigma7", "delta6"));
 
-TEST(ClosedSkin, GivesWayToTheProxyWhateverCountTheTipComesInBy) {
+TEST(ClosedSkin, YieldsToTheProxyAtAnyEncoderCount) {
   const auto presets = load_device_presets(data_dir() / "devices.toml");
   const auto table = anatomy::load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(presets && table);
@@ -107,7 +107,7 @@ TEST(ClosedSkin, GivesWayToTheProxyWhateverCountTheTipComesInBy) {
   }
 }
 
-TEST(StabilityTrial, SeesALoopThatIsTooStiff) {
+TEST(StabilityTrial, DetectsATooStiffLoop) {
   DevicePreset preset = device("omega6");
   preset.coupling = {5.0, 0.0};  // what the device bears, and no damping: the delay feeds the spring
   const StabilityOutcome outcome =
@@ -130,7 +130,7 @@ TEST(ClosedLoopWithStylus, NeverAllocates) {
   EXPECT_EQ(events, 0u);
 }
 
-TEST(ClosedLoopWithStylus, TheWrenchActsOneWholeTickLate) {
+TEST(ClosedLoopWithStylus, DelaysTheWrenchByOneTick) {
   const DevicePreset preset = device("omega6");
   ClosedLoop loop(scene_for(preset, liver_way()), preset, Holder::kBare45g);
   loop.run({});  // nothing has been computed yet: falls
@@ -159,7 +159,7 @@ TEST(BoneContact, IsTheCouplingInSeriesWithTheBone) {
   EXPECT_FALSE(contact.is_limited);
 }
 
-TEST(LossOfResistance, IsFeltWhereALayerGivesWay) {
+TEST(LossOfResistance, OccursAtAPuncturedLayer) {
   const DevicePreset preset = device("omega6");
   PushTrial trial;
   trial.to_mm = 30.0;

@@ -39,7 +39,7 @@ Pose over_skin() {
   return needle_pose({0.0, 0.0, -5.0}, Vec3::UnitZ());
 }
 
-TEST(PassivityTrial, PutsTheWorkOfTheLayersLawIntoAClosedLayer) {
+TEST(PassivityTrial, StoresTheWorkOfTheLayerLaw) {
   anatomy::TissueTable tissues = paper_tissues();
   HapticOptions options = options_for(ForceModel::kInsertion);
   remove_losses(tissues, options);
@@ -68,7 +68,7 @@ TEST(PassivityTrial, PutsTheWorkOfTheLayersLawIntoAClosedLayer) {
   EXPECT_LT(outcome.most_mj, 1e-9);
 }
 
-TEST(PassivityTrial, TakesEnergyWhereTheLayerIsViscous) {
+TEST(PassivityTrial, DissipatesEnergyInAViscousLayer) {
   const auto scene = passive_scene(options_for(ForceModel::kInsertion));
   ClosedMotion motion(over_skin(), 0.0);
   motion.go({0.0, 0.0, 6.0}, Vec3::Zero(), 50.0);
@@ -79,7 +79,7 @@ TEST(PassivityTrial, TakesEnergyWhereTheLayerIsViscous) {
   EXPECT_TRUE(outcome.is_free_at_end);
 }
 
-TEST(PassivityTrial, CountsEnergyThatIsMade) {
+TEST(PassivityTrial, CountsGeneratedEnergy) {
   // A device without torque does not return what a rotation about S puts in, and a shift of S gets it back: energy.
   anatomy::TissueTable tissues = paper_tissues();
   HapticOptions options = options_for(ForceModel::kCombined);
@@ -105,7 +105,7 @@ TEST(PassivityTrial, CountsEnergyThatIsMade) {
   EXPECT_GT(made_mj, kAllowed_mj);
 }
 
-TEST(ClosedMotion, EndsWhereItBeganAndTurnsAboutItsPivot) {
+TEST(ClosedMotion, ReturnsToItsStartAndTurnsAboutItsPivot) {
   ClosedMotion motion(over_skin(), 150.0);
   motion.pass({3.0, 1.0, 2.0}, {0.1, 0.2, -0.3}, 20.0);
   motion.pass({-2.0, 4.0, 5.0}, {-0.2, 0.1, 0.4}, 40.0);
@@ -171,7 +171,7 @@ double error_of(const Moved& moved, MotionKind kind, int number) {
   return outcome.most_mj;
 }
 
-TEST_P(RandomMotions, MakeNoEnergy) {
+TEST_P(RandomMotions, GenerateNoEnergy) {
   constexpr int kOfEachKind = 8;
   std::vector<MotionKind> kinds;
   if (GetParam().tool == Tool::kNeedle) {

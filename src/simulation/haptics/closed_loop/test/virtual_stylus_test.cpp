@@ -46,7 +46,7 @@ TEST(VirtualStylus, StaysFiniteForAnAbsurdlySmallPeriod) {
   }
 }
 
-TEST(VirtualStylus, TurnsUnderATorqueAsItsInertiaSays) {
+TEST(VirtualStylus, TurnsUnderATorqueAccordingToItsInertia) {
   VirtualStylusState state;
   VirtualStylusParams params;
   params.inertia_kg_mm2 = 100.0;  // 0.1 N mm s^2
@@ -119,7 +119,7 @@ VirtualStylusParams weightless() {
   return params;
 }
 
-TEST(VirtualStylus, SwingsAboutThePointWhereItIsHeldWithItsMassAtS) {
+TEST(VirtualStylus, SwingsAboutItsGraspPoint) {
   constexpr double kFine_s = 1e-4;
   constexpr double kPoint_mm = 150.0;
   StylusHold hold = held_at(kPoint_mm);
@@ -138,7 +138,7 @@ TEST(VirtualStylus, SwingsAboutThePointWhereItIsHeldWithItsMassAtS) {
   EXPECT_NEAR(period, 2.0 * std::numbers::pi * std::sqrt(inertia / 1500.0), 1e-3);
 }
 
-TEST(VirtualStylus, HeldAtAPointKeepsItsEnergyAndMomentum) {
+TEST(VirtualStylus, ConservesEnergyAndMomentumWhenHeldAtAPoint) {
   constexpr double kFine_s = 1e-5;
   StylusHold hold;  // a lump at the tip, with no spring: stylus and lump fly as a dumb-bell
   hold.point_mm = 100.0;
@@ -162,7 +162,7 @@ TEST(VirtualStylus, HeldAtAPointKeepsItsEnergyAndMomentum) {
   EXPECT_NEAR(energy() / energy_before, 1.0, 2e-3);
 }
 
-TEST(VirtualStylus, FrictionStopsAPushBelowItAtAnyPointOfHold) {
+TEST(VirtualStylus, FrictionHoldsAgainstASmallerPush) {
   VirtualStylusParams params = weightless();
   params.friction_n = 0.2;
   params.turning_friction_nmm = 0.5;
@@ -209,7 +209,7 @@ TEST(VirtualStylus, NeverAllocates) {
   EXPECT_TRUE(told.is_finite());
 }
 
-TEST(RotationVector, IsUndoneByItsRotation) {
+TEST(RotationVector, RoundTripsThroughARotation) {
   Random random(7);
   for (int i = 0; i < 2000; ++i) {
     Vec3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
@@ -220,7 +220,7 @@ TEST(RotationVector, IsUndoneByItsRotation) {
   EXPECT_NEAR(rotation_vector(rotation_from_vector({1e-9, 0, 0})).x(), 1e-9, 1e-15);
 }
 
-TEST(Encoder, TellsThePoseWithinHalfACount) {
+TEST(Encoder, QuantisesThePoseWithinHalfACount) {
   constexpr EncoderParams kEncoder{0.03, 0.01};
   Random random(3);
   for (int i = 0; i < 1000; ++i) {
@@ -237,7 +237,7 @@ TEST(Encoder, TellsThePoseWithinHalfACount) {
   EXPECT_EQ(quantise(X, {0.0, 0.0}).R(), X.R());
 }
 
-TEST(Encoder, PassesOnWhatIsNotFinite) {
+TEST(Encoder, PassesNonFiniteValuesThrough) {
   const double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(quantise(Pose::translation({kNan, 0, 0}), {}).is_finite());  // the tick refuses it
   EXPECT_TRUE(quantise(Pose::translation({1e300, 0, 0}), {}).is_finite());
@@ -259,7 +259,7 @@ PassivityObserver observe_swing(double k_n_per_mm, double b_ns_per_mm) {
   return observer;
 }
 
-TEST(PassivityObserver, SeesAHeldSpringGiveEnergyAndADamperTakeIt) {
+TEST(PassivityObserver, MeasuresEnergyOfASampledSpringAndADamper) {
   // A spring held for a tick T acts as a damper of -kT/2: in 0.2 s the energy grows to 0.5 mJ exp(0.2 kT/2m), all of it
   // motion at the last zero of the spring, a little earlier.
   const double growth_mj = observe_swing(1.0, 0.0).growth_mj();

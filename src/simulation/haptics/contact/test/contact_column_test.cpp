@@ -15,7 +15,7 @@ double plane_strain_n_per_mm2(double kpa) {
   return kpa * 1e-3 / (1.0 - haptics::kPoisson * haptics::kPoisson);
 }
 
-TEST(TissueColumn, ThickHomogeneousTissueIsBoussinesqsRigidPunch) {
+TEST(TissueColumn, ThickUniformTissueMatchesBoussinesqsPunch) {
   // Under a disc that is small against the column, area * stiffness is 2 a E*; what lies below 40 mm lacks.
   haptics::HapticScene scene = *make_face_scene(haptics::Tool::kFinger, all_fat);
   const double a = scene.face.spread_mm;
@@ -67,7 +67,7 @@ TEST(TissueColumn, ReadsUnlabelledTissueFromHu) {
   EXPECT_NEAR(haptics::tissue_column(*by_hu, Vec3::Zero(), Vec3::UnitZ()).stiffness_n_per_mm3, 1.0 / yields, 1e-9);
 }
 
-TEST(TissueColumn, EachLayerFlattensOnItsOwn) {
+TEST(TissueColumn, LimitsTheCompressionOfEachLayer) {
   // Layers of E e/(1 - e) in series: their indentation under a pressure, summed over the cells.
   const auto scene =
       make_face_scene(haptics::Tool::kTransducer, [](const Vec3& p) { return p.z() < 15.5 ? kFat : kMuscle; });
@@ -84,7 +84,7 @@ TEST(TissueColumn, EachLayerFlattensOnItsOwn) {
   }
 }
 
-TEST(ColumnResponse, IsConvexWithoutStepsAndItsTangentIsItsSlope) {
+TEST(ColumnResponse, IsConvexAndContinuousWithExactTangent) {
   const haptics::TissueColumn column{0.002, 10.0, 0.05};
   EXPECT_EQ(haptics::respond(column, -1.0).pressure, 0.0);
   EXPECT_NEAR(haptics::respond(column, 5.0).pressure, 0.002 * 5.0 * 1.25 / 0.5, 1e-12);
@@ -98,7 +98,7 @@ TEST(ColumnResponse, IsConvexWithoutStepsAndItsTangentIsItsSlope) {
   }
 }
 
-TEST(Face, AreasAndNormalsAreThoseOfTheBody) {
+TEST(Face, MatchesAreasAndNormalsOfTheBody) {
   const haptics::ContactFace probe = haptics::make_transducer_face(60.0, 60.0, 14.0);
   const haptics::ContactFace finger = haptics::make_finger_face(8.0);
   const auto sum = [](const haptics::ContactFace& face) {

@@ -54,7 +54,7 @@ class Hand {
   Vec3 force_ = Vec3::Zero();
 };
 
-TEST(Contact, FingerOnFlatSkinIsStiffnessTimesTheVolumeOfTheDent) {
+TEST(Contact, FingerForceIsStiffnessTimesDentVolume) {
   // The dent is shallow against the column: the linear law shows.
   haptics::HapticOptions options;
   options.coupling.stiffness_n_per_mm = 3.5;
@@ -67,7 +67,7 @@ TEST(Contact, FingerOnFlatSkinIsStiffnessTimesTheVolumeOfTheDent) {
   EXPECT_LT(step.wrench_P.force_n.head<2>().norm(), 0.02 * std::abs(step.wrench_P.force_n.z()));
 }
 
-TEST(Contact, ProbeOnFlatSkinIsTheSumOverItsColumns) {
+TEST(Contact, ProbeForceIsTheSumOverItsColumns) {
   Hand hand(make_face_scene(haptics::Tool::kTransducer, all_fat));
   const haptics::ContactStep step = hand.go({0, 0, 10.0});
   const haptics::TissueColumn column = haptics::tissue_column(hand.scene(), Vec3::Zero(), Vec3::UnitZ());
@@ -101,7 +101,7 @@ TEST(Contact, SteadyForceDoesNotDependOnTheTickRate) {
   }
 }
 
-TEST(Contact, FeelsARibUnderFatAndAHardTumour) {
+TEST(Contact, RendersARibUnderFatAndAHardTumour) {
   const auto rib = [](const Vec3& p) { return (p - Vec3(0, p.y(), 14.0)).norm() < 5.0 ? kBone : kFat; };
   const auto tumour = [](const Vec3& p) { return (p - Vec3(0, 0, 20.0)).norm() < 10.0 ? kLiver : kFat; };
   for (const auto& label_at : {std::function<std::uint8_t(const Vec3&)>(rib), {tumour}}) {
@@ -115,7 +115,7 @@ TEST(Contact, FeelsARibUnderFatAndAHardTumour) {
   }
 }
 
-TEST(Contact, TiltIsRighted) {
+TEST(Contact, RightsATiltedTool) {
   for (const double tilt : {0.17, -0.17}) {
     Hand hand(make_face_scene(haptics::Tool::kTransducer, all_fat));
     const haptics::ContactStep step = hand.go({0, 0, 5.0}, tilt);
@@ -125,7 +125,7 @@ TEST(Contact, TiltIsRighted) {
   }
 }
 
-TEST(Contact, TorqueIsThatOfThePointsForces) {
+TEST(Contact, TorqueMatchesThePointForces) {
   // Half of the face over a plate of bone: the force acts there.
   const auto plate = [](const Vec3& p) { return p.x() > 0.0 && p.z() > 6.0 ? kBone : kFat; };
   Hand hand(make_face_scene(haptics::Tool::kTransducer, plate));
@@ -136,7 +136,7 @@ TEST(Contact, TorqueIsThatOfThePointsForces) {
   EXPECT_LT(std::abs(wrench.torque_nmm.x()), 0.05 * wrench.torque_nmm.y());
 }
 
-TEST(Contact, ShownToolDoesNotPassThroughBoneHoweverHardThePush) {
+TEST(Contact, ShownToolNeverPassesThroughBone) {
   const auto thin = [](const Vec3& p) { return p.z() < 10.0 ? kFat : kBone; };
   for (const haptics::Tool tool : {haptics::Tool::kTransducer, haptics::Tool::kFinger}) {
     Hand hand(make_face_scene(tool, thin));
@@ -166,7 +166,7 @@ TEST(Contact, StaysInTheFrictionConeAndSlidesAtItsEdge) {
   }
 }
 
-TEST(Contact, CostsNothingAndFeelsNothingAwayFromTheSkin) {
+TEST(Contact, HasNoForceAwayFromTheSkin) {
   Hand hand(make_face_scene(haptics::Tool::kTransducer, all_fat));
   EXPECT_EQ(hand.go({0, 0, -1.5}).wrench_P.force_n.norm(), 0.0);
   EXPECT_EQ(hand.go({0, 0, -1.5}).points_in_contact, 0);
@@ -195,7 +195,7 @@ TEST(Contact, StartInsideGivesNoForceStep) {
   EXPECT_NEAR(before, full, 1e-3 * full);
 }
 
-TEST(Contact, TouchIsFeltWithoutAForceStep) {
+TEST(Contact, TouchCausesNoForceStep) {
   Hand hand(make_face_scene(haptics::Tool::kTransducer, all_fat));
   const double full = hand.go({0, 0, 10.0}, 0.0, 0.12).wrench_P.force_n.norm();  // 100 mm/s
   EXPECT_LT(hand.worst_jump_n, 0.1 * full);
@@ -203,7 +203,7 @@ TEST(Contact, TouchIsFeltWithoutAForceStep) {
 
 // The tick.
 
-TEST(ContactTick, NeverAllocatesAndStaysFiniteWhateverComesIn) {
+TEST(ContactTick, NeverAllocatesAndStaysFiniteForAnyInput) {
   const auto rib = [](const Vec3& p) { return p.z() > 6.0 && std::abs(p.x()) < 8.0 ? kBone : kFat; };
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -284,7 +284,7 @@ TEST(ContactTick, RecordsTheToolAndComposesTheTotal) {
   EXPECT_LT((sample.tau_nmm - expected).norm(), 1e-6);
 }
 
-TEST(ContactTick, NeedsTissueToReadFrom) {
+TEST(ContactTick, RefusesASceneWithoutTissue) {
   auto patient = flat_patient(all_fat);
   patient->labels = {};
   patient->ct = {};
@@ -339,7 +339,7 @@ INSTANTIATE_TEST_SUITE_P(BareMasses, RestingOnSkin,
                                            Load{0.15, haptics::Tool::kFinger}));
 
 /// In six degrees of freedom: the hand presses and tilts the tool, a stylus of 50 kg mm^2 turns under it.
-TEST(ContactInClosedLoop, TurnsToRestInTheHandOverBone) {
+TEST(ContactInClosedLoop, ComesToRestOverBone) {
   const auto preset = haptics::load_device_preset(data_dir() / "devices.toml", "sigma7");
   ASSERT_TRUE(preset.has_value());
   const auto thin = [](const Vec3& p) { return p.z() < 4.0 ? kFat : kBone; };

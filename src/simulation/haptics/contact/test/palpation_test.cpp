@@ -34,7 +34,7 @@ TEST(Palpation, PressOnThickTissueIsHertzianContact) {
   EXPECT_NEAR(press(all_fat, kPress_mm).force_n, 1.11 * hertz_n, 0.1 * hertz_n);
 }
 
-TEST(Palpation, BoneIsHarderTheNearerItIsToTheSkin) {
+TEST(Palpation, ShallowerBoneFeelsHarder) {
   const haptics::Palpation none = palpate(all_fat);
   EXPECT_FALSE(none.bone_mm);
   double harder_n_per_mm = std::numeric_limits<double>::infinity();
@@ -48,7 +48,7 @@ TEST(Palpation, BoneIsHarderTheNearerItIsToTheSkin) {
   }
 }
 
-TEST(Palpation, ALayerWithoutThicknessIsNotFelt) {
+TEST(Palpation, IgnoresALayerWithoutThickness) {
   const auto with_muscle = [](double to_mm) {
     return palpate([to_mm](const Vec3& p) { return p.z() >= 10.0 && p.z() < to_mm ? kMuscle : kFat; });
   };
@@ -106,7 +106,7 @@ TEST(Palpation, ALigamentIsNotAsHardAsBone) {
   EXPECT_LT(ligament.pressed_mm, below(kMuscle).pressed_mm);
 }
 
-TEST(Palpation, IsNothingWithoutAPressOrAPlace) {
+TEST(Palpation, IsEmptyWithoutAPressOrAPosition) {
   for (const double nothing : {0.0, -3.0, std::nan("")}) {
     EXPECT_EQ(press(all_fat, nothing).force_n, 0.0);
     EXPECT_EQ(palpate(all_fat, Vec3::Zero(), nothing).force_n, 0.0);

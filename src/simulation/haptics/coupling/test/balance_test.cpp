@@ -50,7 +50,7 @@ TEST(Solve, FollowsTheDeviceWithoutResistance) {
   EXPECT_NEAR(solve(balance).s_mm, 1.05, 1e-9);
 }
 
-TEST(Solve, SaysWhenItsInputHasNoBalance) {
+TEST(Solve, FlagsInputWithoutABalance) {
   AxialBalance balance;
   balance.s_device_mm = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(solve(balance).hit_bound);

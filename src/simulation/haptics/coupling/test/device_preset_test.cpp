@@ -17,7 +17,7 @@ namespace {
 
 const std::filesystem::path kFile = data_dir() / "devices.toml";
 
-TEST(DevicePreset, LimitsOfASceneAreThePremiumsByDefault) {
+TEST(DevicePreset, DefaultSceneLimitsAreThoseOfThePremium) {
   const auto premium = load_device_preset(kFile, "premium");
   ASSERT_TRUE(premium) << premium.error().text();
   constexpr DeviceCapability kDefault;
@@ -29,7 +29,7 @@ TEST(DevicePreset, LimitsOfASceneAreThePremiumsByDefault) {
   EXPECT_NEAR(premium->encoder.count_mm, 25.4 / 860.0, 5e-5);
 }
 
-TEST(DevicePreset, ItsCouplingIsUsedAndLimitsThePathsSpring) {
+TEST(DevicePreset, CouplingLimitsThePathSpring) {
   for (const char* name : {"premium", "omega6", "falcon"}) {
     const auto preset = load_device_preset(kFile, name);
     ASSERT_TRUE(preset) << preset.error().text();
@@ -83,7 +83,7 @@ TEST(DevicePreset, ForcesOfTissuesAreScaledIntoTheDevice) {
   EXPECT_GE(scaled, 1);
 }
 
-TEST(DevicePreset, SceneMayAskForWhatArrivesWithinTheDevice) {
+TEST(DevicePreset, SceneLimitsMatchScaledDeviceLimits) {
   const auto omni = load_device_preset(kFile, "omni");
   ASSERT_TRUE(omni);
   DevicePreset preset = *omni;
@@ -112,7 +112,7 @@ Result<std::vector<DevicePreset>> load_changed(const std::string& from, const st
   return testing::load_changed(kFile, from, to, [](const auto& file) { return load_device_presets(file); });
 }
 
-TEST(DevicePreset, CalibrationPutsTheBaseIntoTheRoom) {
+TEST(DevicePreset, CalibrationPlacesTheBaseInTheRoom) {
   const std::string title = "sensed_dof = 6\nactuated_dof = 6";
   const auto presets = load_changed(title, title +
                                                "\nbase_mm = [100.0, -20.0, 5.0]\nbase_deg = [90.0, 0.0, 90.0]"

@@ -42,7 +42,7 @@ double growth_a_period(const CouplingParams& coupling, double share, double peri
   return std::exp(grown / (kPeriods - kPeriods / 2));
 }
 
-TEST(GateLoop, AWeakenedCouplingComesToRestAtAnyPeriod) {
+TEST(GateLoop, WeakenedCouplingIsStableAtAnyPeriod) {
   const auto presets = load_device_presets(data_dir() / "devices.toml");
   ASSERT_TRUE(presets);
   constexpr double kPhase = 5e-4;  // where in its swing the mass is measured: a factor of 2 over 1500 periods
@@ -70,13 +70,13 @@ TEST(GateLoop, AWeakenedCouplingComesToRestAtAnyPeriod) {
   EXPECT_GT(weakened, 300);
 }
 
-TEST(GateLoop, TheFullCouplingOfTheSameLoopsSwingsUp) {
+TEST(GateLoop, FullCouplingIsUnstableInTheSameLoops) {
   const CouplingParams premium;
   for (const double period_s : {0.009, 0.013, 0.021, 0.051})
     EXPECT_GT(growth_a_period(premium, 1.0, period_s, 1e-4, 0.0045), 1.15) << period_s;
 }
 
-TEST(GateLoop, TheShareIsWholeUpToTheLongestPeriodAndFallsContinuously) {
+TEST(GateLoop, ShareIsOneUpToTheLongestPeriodThenFalls) {
   const GateParams params;
   for (const CouplingParams& coupling : {CouplingParams{}, CouplingParams{0.5, 0.0015}, CouplingParams{1.0, 0.0}}) {
     const double longest_s = longest_period_s(coupling, params);
@@ -92,7 +92,7 @@ TEST(GateLoop, TheShareIsWholeUpToTheLongestPeriodAndFallsContinuously) {
   EXPECT_EQ(permitted_share({0.0, 0.0}, 10.0, params), 1.0) << "no spring, no harm";
 }
 
-TEST(GateLoop, FallsAtOnceAndComesBackWithinTheSafeStartsTime) {
+TEST(GateLoop, FallsAtOnceAndRecoversWithinTheRiseTime) {
   GateState state = open_gate();
   GateInput input = wanting({0, 0, 3});
   for (int i = 0; i < 10; ++i) step_gate(state, input, {});
@@ -175,7 +175,7 @@ TEST(GateLoop, CountsNothingWithoutForceOrMotors) {
 
 // --- motion ---
 
-TEST(GateMotion, AStepThatNoHandMakesIsAFaultInItsPeriod) {
+TEST(GateMotion, FaultsOnAnImpossibleStepInItsPeriod) {
   for (const auto& [step_mm, dt_s, fault] : {std::tuple{2.8, 0.001, telemetry::GateFault::kNone},
                                              std::tuple{3.0, 0.001, telemetry::GateFault::kImpossibleMotion},
                                              std::tuple{100.0, 0.001, telemetry::GateFault::kImpossibleMotion},
@@ -194,7 +194,7 @@ TEST(GateMotion, AStepThatNoHandMakesIsAFaultInItsPeriod) {
   }
 }
 
-TEST(GateMotion, ATurnThatNoHandMakesIsAFault) {
+TEST(GateMotion, FaultsOnAnImpossibleTurn) {
   GateState state = open_gate();
   GateInput input = wanting({0, 0, 2});
   input.w_rad_per_s = {0, 0, 1000};
@@ -228,7 +228,7 @@ TEST(GateVibration, PowerIntoFastMotionIsAFault) {
   }
 }
 
-TEST(GateVibration, SpringsDampersAndHandsAreNone) {
+TEST(GateVibration, IgnoresSpringsDampersAndHands) {
   const double pi = std::numbers::pi;
   EXPECT_EQ(gate_after_swing(2.0, 300.0, 100.0, 0.5 * pi, 2.0).fault, telemetry::GateFault::kNone) << "a spring";
   EXPECT_EQ(gate_after_swing(2.0, 300.0, 100.0, pi, 2.0).fault, telemetry::GateFault::kNone) << "a damper";

@@ -44,7 +44,7 @@ TEST(SafetyGate, StaysFiniteForAnAbsurdlySmallPeriod) {
 
 // --- drops and rises ---
 
-TEST(GateSlew, LetsAPunctureDropWithinOnePeriodAndTellsIt) {
+TEST(GateSlew, AllowsAPunctureDropWithinOnePeriodAndReportsIt) {
   GateState state = open_gate();
   for (int i = 0; i < 10; ++i) step_gate(state, wanting({0, 0, 4.5}), {});
   GateOutput output = step_gate(state, wanting({0, 0, 0.5}), {});
@@ -58,7 +58,7 @@ TEST(GateSlew, LetsAPunctureDropWithinOnePeriodAndTellsIt) {
   EXPECT_EQ(output.drop_n, 0.0) << "told once";
 }
 
-TEST(GateSlew, TellsHowLongALongerDropTook) {
+TEST(GateSlew, ReportsTheDurationOfADrop) {
   GateState state = open_gate();
   for (int i = 0; i < 10; ++i) step_gate(state, wanting({0, 0, 4}), {});
   for (int i = 1; i <= 4; ++i)
@@ -68,13 +68,13 @@ TEST(GateSlew, TellsHowLongALongerDropTook) {
   EXPECT_NEAR(output.drop_s, 4 * kDt_s, 1e-12);
 }
 
-TEST(GateSlew, CallsASlowReleaseNoDrop) {
+TEST(GateSlew, DoesNotReportASlowReleaseAsADrop) {
   GateState state = open_gate();
   for (int i = 0; i < 10; ++i) step_gate(state, wanting({0, 0, 4}), {});
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(step_gate(state, wanting({0, 0, 4.0 - 0.004 * i}), {}).drop_n, 0.0);
 }
 
-TEST(GateSlew, HoldsRisesToItsRate) {
+TEST(GateSlew, LimitsRisesToItsRate) {
   const GateParams params;
   GateState state = open_gate();
   for (int i = 1; i <= 5; ++i) {
@@ -85,7 +85,7 @@ TEST(GateSlew, HoldsRisesToItsRate) {
   }
 }
 
-TEST(GateSlew, TurnsAForceThroughZeroAtOnce) {
+TEST(GateSlew, ReversesAForceThroughZeroAtOnce) {
   const GateParams params;
   GateState state = open_gate();
   for (int i = 0; i < 10; ++i) step_gate(state, wanting({0, 0, 10}), params);
@@ -106,7 +106,7 @@ TEST(GateSlew, NeverDelaysAFallInAnyDirection) {
   }
 }
 
-TEST(GateSlew, AHoleInTheLoopIsNoLeaveToJump) {
+TEST(GateSlew, LimitsTheRiseAfterALoopGap) {
   const GateParams params;
   GateState state = open_gate();
   GateInput input = wanting({0, 0, 30});
@@ -141,7 +141,7 @@ TEST(GateWarmth, SettlesAtTheContinuousForceUnderTheFullPeak) {
   EXPECT_LE(std::sqrt(window_s / 40.0), params.continuous_force_n * (1.0 + 1e-6));
 }
 
-TEST(GateWarmth, HoldsTheMeanSquareOfAnyForceOverLongWindows) {
+TEST(GateWarmth, BoundsTheMeanSquareForceOverLongWindows) {
   Random random(23);
   for (int round = 0; round < 10; ++round) {
     GateParams params;
@@ -164,7 +164,7 @@ TEST(GateWarmth, HoldsTheMeanSquareOfAnyForceOverLongWindows) {
   }
 }
 
-TEST(GateWarmth, LetsAContinuousForcePassForEver) {
+TEST(GateWarmth, PassesAContinuousForceForever) {
   const GateParams params;
   GateState state = open_gate();
   for (int i = 0; i < 60000; ++i) {
@@ -200,7 +200,7 @@ TEST(GateRoll, SettlesAtTheContinuousTorqueOfItsMotor) {
   EXPECT_NEAR(output.wrench.torque_nmm.x(), 170.0, 1e-9);  // the other motors are cool
 }
 
-TEST(GateRoll, HasNoLimitOfItsOwnForADeviceWithoutOne) {
+TEST(GateRoll, HasNoLimitForADeviceWithoutOne) {
   GateParams params;
   params.peak_roll_nmm = params.continuous_roll_nmm = 0.0;
   GateState state = open_gate(params);
@@ -235,7 +235,7 @@ struct LateSpring {
   }
 };
 
-TEST(GatePassivity, BringsASpringToRestThatIsActiveByItsDelay) {
+TEST(GatePassivity, StabilisesADelayedSpring) {
   LateSpring bare;
   for (int i = 0; i < 1000; ++i) bare.move(bare.wanted_n(bare.x_mm));
   ASSERT_GT(std::abs(bare.x_mm) + std::abs(bare.v_mm_per_s), 1e4) << "must diverge on its own";
@@ -268,7 +268,7 @@ TEST(GatePassivity, BringsASpringToRestThatIsActiveByItsDelay) {
   }
 }
 
-TEST(GatePassivity, LeavesAPassiveSpringAlone) {
+TEST(GatePassivity, DoesNotDampAPassiveSpring) {
   Random random(7);
   for (int round = 0; round < 40; ++round) {
     const double count_mm = round < 20 ? 0.0 : 0.0295;  // of the encoder
@@ -292,7 +292,7 @@ TEST(GatePassivity, LeavesAPassiveSpringAlone) {
   }
 }
 
-TEST(GatePassivity, ForgetsWhatFrictionTookWhenTheForceIsGone) {
+TEST(GatePassivity, ForgetsDissipatedEnergyWhenTheForceEnds) {
   const GateParams params;
   GateState state = open_gate();
   GateInput input = wanting({0, 0, 3});
@@ -303,7 +303,7 @@ TEST(GatePassivity, ForgetsWhatFrictionTookWhenTheForceIsGone) {
   EXPECT_NEAR(state.energy_mj, -params.passivity_margin_mj, 1e-12);
 }
 
-TEST(GatePassivity, ForgetsAnExcessOnceTheForceHasLongBeenGone) {
+TEST(GatePassivity, ForgetsExcessEnergyLongAfterTheForceEnds) {
   const GateParams params;
   GateState state = open_gate();
   GateInput input = wanting({0, 0, 1});
@@ -316,7 +316,7 @@ TEST(GatePassivity, ForgetsAnExcessOnceTheForceHasLongBeenGone) {
   EXPECT_LE(state.energy_mj, 0.0);
 }
 
-TEST(GatePassivity, CountsNoWeight) {
+TEST(GatePassivity, ExcludesTheCompensatedWeight) {
   GateState state = open_gate();
   GateInput input = wanting({0, 0, 1});  // across the motion: no work
   input.weight = {{0, -0.5, 0}, {10, 0, 0}};
@@ -329,7 +329,7 @@ TEST(GatePassivity, CountsNoWeight) {
   }
 }
 
-TEST(GatePassivity, DampsNoMoreThanTheDeviceBears) {
+TEST(GatePassivity, LimitsDampingToTheDevice) {
   const GateParams params;
   GateState state = open_gate();
   GateInput input = wanting({0, 0, 3}, {0, 20, 0});
@@ -346,7 +346,7 @@ TEST(GatePassivity, DampsNoMoreThanTheDeviceBears) {
 
 // --- speed ---
 
-TEST(GateBrake, LeavesOnlyDampingAboveItsSpeedAndFaultsWhenItLasts) {
+TEST(GateBrake, AppliesOnlyDampingAboveItsSpeedThenFaults) {
   const GateParams params;
   GateState state = open_gate();
   GateInput input = wanting({0, 0, 5});
@@ -381,7 +381,7 @@ TEST(GateBrake, CountsASwingThroughStandstill) {
   EXPECT_EQ(state.fault, telemetry::GateFault::kRunaway);
 }
 
-TEST(GateBrake, BlamesNoMotorThatGivesNothing) {
+TEST(GateBrake, DoesNotFaultWithoutForce) {
   GateState state;
   GateInput input;
   input.v_mm_per_s = {3000, 0, 0};
@@ -391,7 +391,7 @@ TEST(GateBrake, BlamesNoMotorThatGivesNothing) {
 
 // --- saturation ---
 
-TEST(GateClamp, KeepsTheAxialForceAndTheRatioOfLateralForceToTorque) {
+TEST(GateClamp, KeepsAxialForceAndTheLateralRatio) {
   const GateParams params;
   GateState state = open_gate();
   const GateInput input = wanting({30, 0, 30}, {0, 200, 0});
@@ -403,7 +403,7 @@ TEST(GateClamp, KeepsTheAxialForceAndTheRatioOfLateralForceToTorque) {
   EXPECT_NEAR(output.wrench.torque_nmm.y() / output.wrench.force_n.x(), 200.0 / 30.0, 1e-6);
 }
 
-TEST(GateClamp, LeavesRoomAcrossWhenTheAxialForceAloneSaturates) {
+TEST(GateClamp, KeepsLateralForceWhenAxialForceSaturates) {
   const GateParams params;
   GateState state = open_gate();
   GateOutput output;
@@ -414,7 +414,7 @@ TEST(GateClamp, LeavesRoomAcrossWhenTheAxialForceAloneSaturates) {
   EXPECT_GT(output.wrench.force_n.z(), 0.979 * params.peak_force_n);
 }
 
-TEST(GateClamp, JumpsNowhereOnItsWayIntoSaturation) {
+TEST(GateClamp, IsContinuousIntoSaturation) {
   GateParams params;
   params.continuous_force_n = params.peak_force_n;  // warmth is another matter
   constexpr double kGain = 5.0;  // of the clamp: sqrt(1 - 0.2^2)/0.2, where it leaves the room across
@@ -432,7 +432,7 @@ TEST(GateClamp, JumpsNowhereOnItsWayIntoSaturation) {
   }
 }
 
-TEST(GateClamp, GivesNoTorqueToADeviceWithout) {
+TEST(GateClamp, ZeroesTorqueForADeviceWithoutIt) {
   GateParams params;
   params.peak_torque_nmm = 0.0;
   GateState state = open_gate(params);

@@ -56,7 +56,7 @@ constexpr std::array kBroken{std::numeric_limits<double>::quiet_NaN(),
                              -1e200,
                              1.1e6};
 
-TEST(SafetyGate, FadesToZeroAndLatchesWhenAnyNumberIsBroken) {
+TEST(SafetyGate, FadesToZeroAndLatchesOnAnyNonFiniteNumber) {
   const GateParams params;
   const int ramp = static_cast<int>(std::lround(params.fault_ramp_s / kDt_s));
   for (std::size_t i = 0; i < 22; ++i) {
@@ -81,7 +81,7 @@ TEST(SafetyGate, FadesToZeroAndLatchesWhenAnyNumberIsBroken) {
   }
 }
 
-TEST(SafetyGate, BearsTheSmallestNumbersWithoutAFault) {
+TEST(SafetyGate, AcceptsDenormalNumbersWithoutAFault) {
   const double denormal = std::numeric_limits<double>::denorm_min();
   for (std::size_t i = 0; i < 22; ++i) {
     for (const double small : {denormal, -denormal, 1e-160, 0.0}) {
@@ -99,7 +99,7 @@ TEST(SafetyGate, BearsTheSmallestNumbersWithoutAFault) {
   }
 }
 
-TEST(SafetyGate, TakesAPeriodWithoutTimeForABrokenOne) {
+TEST(SafetyGate, FaultsOnAPeriodWithoutTime) {
   for (const double dt_s : {0.0, -0.001}) {
     GateState state = open_gate();
     GateInput input = wanting({0, 0, 1});
@@ -109,7 +109,7 @@ TEST(SafetyGate, TakesAPeriodWithoutTimeForABrokenOne) {
   }
 }
 
-TEST(SafetyGate, GivesALimitedWrenchForAnyNumbersAnywhere) {
+TEST(SafetyGate, LimitsTheWrenchForAnyInput) {
   Random random(11);
   for (int round = 0; round < 20000; ++round) {
     GateParams params;
@@ -171,7 +171,7 @@ Vec3 any_vector(Random& random, double size) {
   return {random.uniform(-scale, scale), random.uniform(-scale, scale), random.uniform(-scale, scale)};
 }
 
-TEST(SafetyGate, StaysWithinItsLimitsOverAMillionRandomPeriods) {
+TEST(SafetyGate, StaysWithinLimitsOverAMillionRandomPeriods) {
   Random random(5);
   int full_periods = 0;
   for (int round = 0; round < 1000; ++round) {
@@ -203,7 +203,7 @@ TEST(SafetyGate, StaysWithinItsLimitsOverAMillionRandomPeriods) {
   EXPECT_GT(full_periods, 1000) << "the sweep never came near the limits";
 }
 
-TEST(SafetyGate, AllocatesNothingAndGivesTheSameBitsAgain) {
+TEST(SafetyGate, NeverAllocatesAndIsDeterministic) {
   for (int pass = 0; pass < 2; ++pass) {
     GateState a, b;
     Random random(17);
@@ -223,7 +223,7 @@ TEST(SafetyGate, AllocatesNothingAndGivesTheSameBitsAgain) {
   }
 }
 
-TEST(SafetyGate, PassesAnOrdinaryForceAsItIs) {
+TEST(SafetyGate, PassesAnOrdinaryForceUnchanged) {
   GateState state = open_gate();
   for (int i = 0; i < 1000; ++i) {
     GateInput input = wanting({0.5, 0.2 * std::sin(0.01 * i), 3.0 + std::cos(0.02 * i)});
@@ -237,7 +237,7 @@ TEST(SafetyGate, PassesAnOrdinaryForceAsItIs) {
   }
 }
 
-TEST(SafetyGate, WaitsForASmallForceWhenItStartsInsideTissue) {
+TEST(SafetyGate, WaitsForASmallForceWhenStartedInsideTissue) {
   const GateParams params;
   GateState state;
   GateInput input = wanting({0, 0, 3});
@@ -305,7 +305,7 @@ TEST(SafetyGate, SilenceNeverSkipsTheSafeStart) {
   EXPECT_EQ(state.mode, telemetry::GateMode::kWaiting);
 }
 
-TEST(SafetyGate, FadesToOffWhenNobodyWantsForces) {
+TEST(SafetyGate, FadesToOffWithoutARequestForForces) {
   const GateParams params;
   GateState state = open_gate();
   GateInput input = wanting({0, 0, 3});
@@ -321,7 +321,7 @@ TEST(SafetyGate, FadesToOffWhenNobodyWantsForces) {
   EXPECT_EQ(state.mode, telemetry::GateMode::kWaiting) << "after off comes a safe start";
 }
 
-TEST(SafetyGate, AFaultLatchesUntilAResetAfterItsCauseIsGone) {
+TEST(SafetyGate, LatchesAFaultUntilAResetAfterItsCauseEnds) {
   using Break = std::function<void(GateInput&)>;
   const std::array<std::pair<telemetry::GateFault, Break>, 5> causes{{
       {telemetry::GateFault::kDeviceLost,
@@ -363,7 +363,7 @@ TEST(SafetyGate, KeepsTheFirstFault) {
   EXPECT_EQ(state.fault, telemetry::GateFault::kDeviceSilent);
 }
 
-TEST(SafetyGate, TellsUnusableParametersByName) {
+TEST(SafetyGate, NamesUnusableParameters) {
   EXPECT_TRUE(check(GateParams{}).has_value());
   GateParams params;
   params.slew_n_per_s = std::nan("");

@@ -13,7 +13,7 @@ constexpr LoadingLaw kSkin{0.46, 0.02, 0.1};
 constexpr LoadingLaw kMuscle{0.19, 0.03, 0.11};
 constexpr LoadingLaw kLiver{0.42, 0.02, 0.12};
 
-TEST(PrepunctureForce, IsTheSumOfVoigtElementsWhereOneIsAdded) {
+TEST(PrepunctureForce, EqualsTheSumOfVoigtElements) {
   // Paper A: it starts with one Voigt element, and one is added whenever x exceeds a multiple of dx. Element i is i
   // times as stiff as the first and stretched by x - (i - 1) dx; every element has the same damper. At x = n dx the
   // printed cubic is the sum over these n elements.
@@ -30,7 +30,7 @@ TEST(PrepunctureForce, IsTheSumOfVoigtElementsWhereOneIsAdded) {
   }
 }
 
-TEST(PrepunctureForce, GivesTheDisplacementsComputedFromTable1) {
+TEST(PrepunctureForce, MatchesTheDisplacementsOfTable1) {
   constexpr double kTwoDigits = 0.005;  // references.md prints two digits
   EXPECT_NEAR(static_displacement_mm(2.8, kSkin), 0.62, kTwoDigits);
   EXPECT_NEAR(static_displacement_mm(2.5, kMuscle), 0.88, kTwoDigits);
@@ -41,7 +41,7 @@ TEST(PrepunctureForce, GivesTheDisplacementsComputedFromTable1) {
   EXPECT_NEAR(tangent_stiffness_n_per_mm(static_displacement_mm(1.5, kLiver), kLiver), 6.7, kOneDigit);
 }
 
-TEST(PrepunctureForce, IsNeverNegativeAndZeroOutside) {
+TEST(PrepunctureForce, IsNonNegativeAndZeroOutside) {
   EXPECT_EQ(prepuncture_force_n(0.0, 10.0, kSkin), 0.0);
   EXPECT_EQ(prepuncture_force_n(-1.0, 10.0, kSkin), 0.0);
   for (double v = -200.0; v < 0.0; v += 10.0) EXPECT_GE(prepuncture_force_n(0.3, v, kSkin), 0.0);

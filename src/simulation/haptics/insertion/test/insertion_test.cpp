@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Speeds, PuncturePeaks,
                          ::testing::Values(Drive{2, 1000}, Drive{10, 1000}, Drive{50, 1000}, Drive{10, 4000},
                                            Drive{50, 4000}, Drive{10, 250}));
 
-TEST(Insertion, TissueIsEnteredAfterItsLayerGaveWay) {
+TEST(Insertion, EntersATissueAfterItsLayerIsPierced) {
   using enum telemetry::EventKind;
   const std::vector<std::pair<telemetry::EventKind, int>> in_order{{kPuncture, 0},    {kEnter, kFat}, {kPuncture, 1},
                                                                    {kEnter, kMuscle}, {kPuncture, 2}, {kEnter, kLiver}};
@@ -73,7 +73,7 @@ TEST(Insertion, PeaksAreExactForATremblingHand) {
   }
 }
 
-TEST(Insertion, SkinPeakIsExactForANeedleThatSlidesAndTilts) {
+TEST(Insertion, SkinPeakIsExactForASlidingTiltingNeedle) {
   for (const double slide_mm_per_s : {-40.0, 15.0, 40.0}) {
     Driver driver(make_scene(liver_way()));
     std::vector<telemetry::TickSample> samples;
@@ -89,7 +89,7 @@ TEST(Insertion, SkinPeakIsExactForANeedleThatSlidesAndTilts) {
   }
 }
 
-TEST(Insertion, RecordsTheVeryValuesPutIntoTheLaw) {
+TEST(Insertion, RecordsTheInputsOfTheLaw) {
   Driver driver(make_scene(liver_way()));
   const anatomy::TissueTable table = paper_tissues();
   int loaded = 0;
@@ -119,7 +119,7 @@ TEST(Insertion, DropsAfterEachPuncture) {
   }
 }
 
-TEST(Insertion, SumsTheFrictionOfEveryTissueByItsOwnLength) {
+TEST(Insertion, SumsFrictionPerTissueLength) {
   haptics::HapticOptions options;
   anatomy::TissueTable smooth = paper_tissues();
   for (anatomy::TissueParams& tissue : smooth.tissues) tissue.roughness_n = 0.0;
@@ -148,7 +148,7 @@ TEST(Insertion, FluctuatesWithinDeltaMuOfThePenetratedTissues) {
   EXPECT_GT(largest, 0.3 * bound);
 }
 
-TEST(Insertion, IsTheSameAtOneAndFourKilohertz) {
+TEST(Insertion, IsIndependentOfTheTickRate) {
   const auto slow = Driver(make_scene(liver_way()), 1000.0).move(60.0, 10.0);
   const auto fast = Driver(make_scene(liver_way()), 4000.0).move(60.0, 10.0);
   double worst = 0.0;
@@ -183,7 +183,7 @@ TEST(Insertion, CutsOnlyFreshLiverAndOnlyForward) {
   EXPECT_NEAR(again.back().f_cutting_n, -0.6, 1e-9);
 }
 
-TEST(Insertion, SecondTimeInTheSameHoleNeedsNoPunctureAndNoCutting) {
+TEST(Insertion, ReentersItsHoleWithoutPunctureOrCutting) {
   anatomy::TissueTable smooth = paper_tissues();
   for (anatomy::TissueParams& tissue : smooth.tissues) tissue.roughness_n = 0.0;
   Driver driver(make_scene(liver_way(), {}, smooth));
@@ -201,7 +201,7 @@ TEST(Insertion, SecondTimeInTheSameHoleNeedsNoPunctureAndNoCutting) {
   EXPECT_NEAR(before - after, 0.6, 0.01);  // the cutting term (Azar & Hayward 2008)
 }
 
-TEST(Insertion, AnotherPlaceIsAnotherHole) {
+TEST(Insertion, StartsANewHoleElsewhere) {
   Driver driver(make_scene(liver_way()));
   driver.move(40.0, 20.0);
   driver.move(-10.0, 20.0);
@@ -210,12 +210,12 @@ TEST(Insertion, AnotherPlaceIsAnotherHole) {
   EXPECT_EQ(punctures(samples), (std::vector<int>{0, 1, 2}));
 }
 
-TEST(Insertion, MuscleBehindAFatPlaneIsTheSameLayer) {
+TEST(Insertion, TreatsMuscleBehindAFatPlaneAsTheSameLayer) {
   Driver driver(make_scene({{0, kFat}, {10, kMuscle}, {16, kFat}, {20, kMuscle}, {28, kLiver}}));
   EXPECT_EQ(punctures(driver.move(60.0, 10.0)), (std::vector<int>{0, 1, 2}));
 }
 
-TEST(Insertion, AThinLayerInTheDentOfAnotherIsStillPierced) {
+TEST(Insertion, PiercesAThinLayerWithinTheDentOfAnother) {
   // Muscle indents by several mm in the tented profile: deeper than the 2 mm of muscle in front of the liver.
   anatomy::TissueTable tented = paper_tissues();
   tented.layers[0].delta_x_mm = 4.0;
@@ -233,7 +233,7 @@ TEST(Insertion, BoneStopsTheNeedle) {
   EXPECT_GT(samples.back().device_f_n.norm(), 7.0);
 }
 
-TEST(Insertion, ForceIsNeverPullingOnRetreatFromALoadedLayer) {
+TEST(Insertion, NeverPullsOnRetreatFromALoadedLayer) {
   Driver driver(make_scene(liver_way()));
   driver.move(2.0, 10.0);  // skin loaded, not pierced
   for (const telemetry::TickSample& sample : driver.move(-5.0, 30.0)) {
@@ -243,7 +243,7 @@ TEST(Insertion, ForceIsNeverPullingOnRetreatFromALoadedLayer) {
   EXPECT_EQ(driver.state().needle.insertion.phase, telemetry::InsertionPhase::kOutside);
 }
 
-TEST(Insertion, HoldsANeedleThatIsLetGo) {
+TEST(Insertion, HoldsAReleasedNeedle) {
   Driver driver(make_scene(liver_way()));
   driver.move(50.0, 10.0);
   driver.hold(1.0);
@@ -297,7 +297,7 @@ TEST(Insertion, ViscousFrictionGrowsWithSpeedUpToABound) {
   EXPECT_NEAR(friction_n(50.0, 10.0) / friction_n(5.0, 10.0), 2.0, 0.1);
 }
 
-TEST(Insertion, BesideItsPathTheHandFeelsTheBendThatIsDrawn) {
+TEST(Insertion, LateralForceMatchesTheDrawnBend) {
   const auto sideways = [](const anatomy::TissueTable& tissues, haptics::ForceModel model) {
     haptics::HapticOptions options;
     options.force_model = model;
@@ -327,7 +327,7 @@ TEST(Insertion, KeepsThePathThatPiercedTheSkin) {
   EXPECT_GT(sample.tau_nmm.norm(), 10.0);
 }
 
-TEST(Insertion, RecordsTheWayFromContactToPuncture) {
+TEST(Insertion, RecordsTheDisplacementFromContactToPuncture) {
   Driver driver(make_scene(liver_way()));
   const telemetry::TickSample sample = driver.move(10.0, 10.0).back();
   constexpr double kTick_mm = 0.01;  // contact is noticed at the end of a tick
@@ -336,7 +336,7 @@ TEST(Insertion, RecordsTheWayFromContactToPuncture) {
   EXPECT_NEAR(sample.contact_to_puncture_mm.head<2>().norm(), 0.0, kTick_mm);
 }
 
-TEST(Insertion, ObliqueNeedleTouchesTheSkinWhereItsAxisMeetsIt) {
+TEST(Insertion, ObliqueNeedleTouchesTheSkinAtItsAxis) {
   Driver driver(make_scene(liver_way()));
   const Vec3 axis = Vec3(1.0, 0.0, 1.0).normalized();
   std::vector<telemetry::TickSample> samples;

@@ -29,7 +29,7 @@ TEST_P(NeedleShape, IsStraightOutsideTheBody) {
   EXPECT_EQ(haptics::needle_shape(driver.state().needle, *scene_, true).spans, 0);
 }
 
-TEST_P(NeedleShape, StaysInItsChannelWhenTheHandMovesAside) {
+TEST_P(NeedleShape, StaysInItsChannelWhenTheHandMovesSideways) {
   Driver driver = held_aside(scene_);
   const telemetry::NeedleShape shape = haptics::needle_shape(driver.state().needle, *scene_, true);
   const int nodes = scene_->beam_with_stylet.node_count;
@@ -44,7 +44,7 @@ TEST_P(NeedleShape, StaysInItsChannelWhenTheHandMovesAside) {
   for (int node = 1; node < nodes; ++node) EXPECT_GT(std::hypot(x_mm(node), y_mm(node)), 0.0) << "it bends at " << node;
 }
 
-TEST_P(NeedleShape, IsThatOfTheSameBeamInEveryModel) {
+TEST_P(NeedleShape, IsTheSameInEveryForceModel) {
   Driver driver = held_aside(scene_);
   const auto combined = make_scene(liver_way(), haptics::ForceModel::kCombined);
   Driver other = held_aside(combined);
@@ -54,7 +54,7 @@ TEST_P(NeedleShape, IsThatOfTheSameBeamInEveryModel) {
   EXPECT_LT(telemetry::largest_difference_mm(is, same), 0.3);  // the tips lag by different depths
 }
 
-TEST_P(NeedleShape, OfAStiffNeedleIsStraighter) {
+TEST_P(NeedleShape, IsStraightForARigidNeedle) {
   haptics::HapticOptions rigid = scene_->options;
   rigid.has_bending = false;
   const auto scene = make_scene(liver_way(), rigid);

@@ -45,7 +45,7 @@ TEST(PathConstraint, IsLinearNearThePathAndConstantBeyond) {
   EXPECT_LT((far.force_n + kParams.force_n * side).norm(), 1e-12);  // m(d) d with m = m0/d: the paper's form
 }
 
-TEST(PathConstraint, HasNoPartAlongThePathBehindItsFadeAndNeverOneInwards) {
+TEST(PathConstraint, HasNoAxialPartPastItsFadeAndNeverPullsInwards) {
   const Vec3 side = 3.0 * kLine.direction_P.unitOrthogonal();
   const Vec3 tilted = (kLine.direction_P + 0.1 * kLine.direction_P.unitOrthogonal()).normalized();
   double most_outward_n = 0.0;
@@ -87,7 +87,7 @@ TEST(PathConstraint, TurnsTheNeedleBackOntoThePath) {
   }
 }
 
-TEST(PathConstraint, ForceAndTorqueAboutTheStylusAreTheGradientOfOneEnergy) {
+TEST(PathConstraint, WrenchIsTheGradientOfOneEnergy) {
   Random random(9);
   const auto within = [&](double a) {
     return Vec3(random.uniform(-a, a), random.uniform(-a, a), random.uniform(-a, a));
@@ -111,7 +111,7 @@ TEST(PathConstraint, ForceAndTorqueAboutTheStylusAreTheGradientOfOneEnergy) {
   }
 }
 
-TEST(PathConstraint, APoseAheadDampsAndNeverDrives) {
+TEST(PathConstraint, PredictedPoseOnlyDamps) {
   Random random(13);
   const auto within = [&](double a) {
     return Vec3(random.uniform(-a, a), random.uniform(-a, a), random.uniform(-a, a));

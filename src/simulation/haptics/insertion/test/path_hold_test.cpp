@@ -131,7 +131,7 @@ TEST(PathHold, NeverPullsTheNeedleIn) {
 
 class PathHoldOf : public ::testing::TestWithParam<haptics::ForceModel> {};
 
-TEST_P(PathHoldOf, GivesTheHandNoEnergyAroundALoop) {
+TEST_P(PathHoldOf, GeneratesNoEnergyAroundALoop) {
   const auto scene = make_scene(liver_way(), options_of(GetParam()));
   struct Depths {
     double from_mm, to_mm;
@@ -155,7 +155,7 @@ TEST_P(PathHoldOf, GivesTheHandNoEnergyAroundALoop) {
   }
 }
 
-TEST_P(PathHoldOf, GivesTheHandNoEnergyAroundALoopOfTilts) {
+TEST_P(PathHoldOf, GeneratesNoEnergyAroundALoopOfTilts) {
   const auto scene = make_scene(liver_way(), options_of(GetParam()));
   constexpr double kRounding_nmm = 5e-3;
   for (const double tilt : {0.05, -0.05, 0.15}) {
@@ -182,7 +182,7 @@ INSTANTIATE_TEST_SUITE_P(Models, PathHoldOf,
                                            haptics::ForceModel::kCombined),
                          [](const auto& tested) { return to_string(tested.param); });
 
-TEST(PathHold, HasNoStepWhereTheNeedleLeavesTheSkin) {
+TEST(PathHold, IsContinuousWhenTheNeedleLeavesTheSkin) {
   const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion), constrained_tissues());
   for (const Vec3& side : kSides) {
     Driver driver = inserted(scene, 30.0);
@@ -204,7 +204,7 @@ TEST(PathHold, HasNoStepWhereTheNeedleLeavesTheSkin) {
   }
 }
 
-TEST(PathHold, HasNoStepWhereTheNeedleFallsIntoItsHoleBesideThePath) {
+TEST(PathHold, IsContinuousWhenTheNeedleReentersItsHole) {
   const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion), constrained_tissues());
   Driver driver = inserted(scene, -5.0);
   Vec3 before = Vec3::Zero();
@@ -218,7 +218,7 @@ TEST(PathHold, HasNoStepWhereTheNeedleFallsIntoItsHoleBesideThePath) {
   EXPECT_LT(largest_n, 0.01);
 }
 
-TEST(PathHold, AParallelOffsetPushesTheStylusBackAndDoesNotTurnIt) {
+TEST(PathHold, ParallelOffsetCausesForceWithoutTorque) {
   const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion), constrained_tissues());
   Driver driver = inserted(scene, 40.0);
   go(driver, {{0, 0, 40}, kStraight}, {{2, 0, 40}, kStraight}, 5.0, [](const auto&...) {});
@@ -228,7 +228,7 @@ TEST(PathHold, AParallelOffsetPushesTheStylusBackAndDoesNotTurnIt) {
   EXPECT_LT(sample.tau_nmm.norm(), 1e-9);
 }
 
-TEST(PathHold, ATiltAboutTheTipIsTurnedBackAndItsStylusPushedBack) {
+TEST(PathHold, TiltAboutTheTipCausesForceAndTorque) {
   const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion), constrained_tissues());
   Driver driver = inserted(scene, 40.0);
   const double tilt_rad = 0.01;
@@ -244,7 +244,7 @@ TEST(PathHold, ATiltAboutTheTipIsTurnedBackAndItsStylusPushedBack) {
   EXPECT_NEAR((sample.tau_nmm - lever.cross(axial_n)).y(), -hold.torque_nmm / hold.linear_rad * tilt_rad, 1e-6);
 }
 
-TEST(PathHold, ATiltAboutTheStylusMeetsOnlyATorque) {
+TEST(PathHold, TiltAboutTheStylusCausesOnlyTorque) {
   const auto scene = make_scene(liver_way(), options_of(haptics::ForceModel::kInsertion), constrained_tissues());
   Driver driver = inserted(scene, 40.0);
   const double length = scene->needle.length_mm;
@@ -256,7 +256,7 @@ TEST(PathHold, ATiltAboutTheStylusMeetsOnlyATorque) {
   EXPECT_LT(sample.tau_nmm.y(), -10.0);
 }
 
-TEST(PathHold, ADeviceWithoutTorqueIsHeldAtTheStylus) {
+TEST(PathHold, HoldsADeviceWithoutTorqueAtTheStylus) {
   haptics::DeviceCapability device;
   device.peak_torque_nmm = 0.0;
   const auto scene = *make_haptic_scene(layered_patient(liver_way()), constrained_tissues(), {}, device,

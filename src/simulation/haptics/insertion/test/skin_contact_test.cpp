@@ -29,7 +29,7 @@ TEST(SkinContact, HoldsItsPointWithinTheConeOfFriction) {
   EXPECT_NEAR(contact.to_device_mm, -0.5, 1e-6);
 }
 
-TEST(SkinContact, PiercesOnlyWithTheForceAlongTheNeedle) {
+TEST(SkinContact, PiercesByAxialForceOnly) {
   const auto scene = make_scene(liver_way());
   haptics::SkinContact contact;
   haptics::follow_skin(contact, *scene, {1.0, 0.0, 1.0}, kTip, kDt_s);
@@ -62,7 +62,7 @@ double cycle_mj(haptics::ForceModel model, double angle_rad, double drag_mm) {
   return work_mj;
 }
 
-TEST(SkinContact, GivesTheHandNoEnergyWhereAnObliqueNeedleIsDragged) {
+TEST(SkinContact, GeneratesNoEnergyForADraggedObliqueNeedle) {
   using enum haptics::ForceModel;
   for (const haptics::ForceModel model : {kInsertion, kProxy, kCombined})
     for (const double angle_deg : {0.0, 30.0, 45.0, 60.0})
@@ -91,7 +91,7 @@ double tremble_mj(haptics::ForceModel model, double frequency_hz, double width_m
   return most_mj;
 }
 
-TEST(SkinContact, GivesTheHandNoEnergyWhereItTrembles) {
+TEST(SkinContact, GeneratesNoEnergyUnderTremor) {
   using enum haptics::ForceModel;
   for (const haptics::ForceModel model : {kInsertion, kProxy, kCombined})
     for (const double frequency_hz : {10.0, 40.0, 60.0, 100.0})
@@ -101,7 +101,7 @@ TEST(SkinContact, GivesTheHandNoEnergyWhereItTrembles) {
               << to_string(model) << ' ' << frequency_hz << " Hz, " << width_mm << ", " << deep_mm << " mm";
 }
 
-TEST(SkinContact, ATurnAboutTheGripMeetsTheLeverOfTheForceAtTheTip) {
+TEST(SkinContact, TurnAboutTheGripMeetsTheTipForceLever) {
   using enum haptics::ForceModel;
   for (const haptics::ForceModel model : {kInsertion, kProxy, kCombined}) {
     haptics::HapticOptions options;
@@ -119,7 +119,7 @@ TEST(SkinContact, ATurnAboutTheGripMeetsTheLeverOfTheForceAtTheTip) {
   }
 }
 
-TEST(SkinContact, ATipThatLeavesItsChannelSidewaysIsTreatedAsInserted) {
+TEST(SkinContact, TreatsATipBesideItsChannelAsInserted) {
   using enum haptics::ForceModel;
   for (const haptics::ForceModel model : {kInsertion, kProxy, kCombined}) {
     Driver driver(make_scene(liver_way(), model));

@@ -21,7 +21,7 @@ double length_mm(const haptics::SoftColumn& column) {
   return std::accumulate(column.thickness_mm.begin(), column.thickness_mm.begin() + column.cells, 0.0);
 }
 
-TEST(SoftColumn, HomogeneousTissueIsARigidPunchOnAHalfSpaceAtFirst) {
+TEST(SoftColumn, MatchesARigidPunchForASmallLoad) {
   const haptics::SoftColumn column = column_on_skin({{0, kFat}});
   constexpr double kPlane_n_per_mm2 = 0.01 / 0.75;  // 10 kPa, the table's default
   constexpr double kForce_n = 1e-5;
@@ -29,7 +29,7 @@ TEST(SoftColumn, HomogeneousTissueIsARigidPunchOnAHalfSpaceAtFirst) {
   EXPECT_NEAR(kForce_n / column.depression_mm(kForce_n), 2.0 * kRadius_mm * kPlane_n_per_mm2, 0.06 * 0.07);
 }
 
-TEST(SoftColumn, IsNeverCompressedToLessThanNothing) {
+TEST(SoftColumn, NeverCompressesBeyondItsLength) {
   const haptics::SoftColumn column = column_on_skin(liver_way());
   EXPECT_EQ(column.depression_mm(0.0), 0.0);
   EXPECT_EQ(column.depression_mm(-1.0), 0.0);
@@ -55,7 +55,7 @@ TEST(SoftColumn, EndsAtBoneAndAtFluid) {
   }
 }
 
-TEST(SoftColumn, IsTheSameWithAndWithoutLabelsOfTissueWithoutAWall) {
+TEST(SoftColumn, IgnoresLabelsOfTissueWithoutAWall) {
   const std::vector<Slab> slabs{{0, kFat}, {12, kMuscle}, {24, kFat}};
   for (const haptics::ForceModel model : {haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
     const auto column_of = [&](const std::shared_ptr<const haptics::HapticScene>& scene) {
@@ -84,7 +84,7 @@ double puncture_at_mm(const anatomy::TissueTable& table, double rate_hz = 1000.0
   return 0.0;
 }
 
-TEST(YieldingWall, AddsItsDepressionToTheDevicesWayAndNothingToThePeak) {
+TEST(YieldingWall, AddsTravelButNotPeakForce) {
   const anatomy::TissueTable table = yielding_tissues();
   const auto scene = make_scene(liver_way(), haptics::HapticOptions{}, table);
   const haptics::SoftColumn column = haptics::soft_column(*scene, Vec3::Zero(), Vec3::UnitZ(), 0.635 + 2.0);
@@ -98,7 +98,7 @@ TEST(YieldingWall, AddsItsDepressionToTheDevicesWayAndNothingToThePeak) {
   }
 }
 
-TEST(YieldingWall, ReturnsNoMoreWorkThanItWasGiven) {
+TEST(YieldingWall, NeverReturnsMoreWorkThanStored) {
   Driver driver(make_scene(liver_way(), haptics::HapticOptions{}, yielding_tissues()));
   driver.move(0.0, 10.0);
   double work_mj = 0.0;
@@ -121,7 +121,7 @@ TEST(YieldingWall, ReturnsNoMoreWorkThanItWasGiven) {
   }
 }
 
-TEST(YieldingWall, FollowsANeedleThatIsPulledBackAtAnySpeed) {
+TEST(YieldingWall, FollowsAWithdrawnNeedleAtAnySpeed) {
   for (const double speed_mm_per_s : {20.0, 100.0, 400.0}) {
     // Pressed in without a puncture, and back.
     Driver driver(make_scene(liver_way(), haptics::HapticOptions{}, yielding_tissues()));
@@ -148,7 +148,7 @@ TEST(YieldingWall, FollowsANeedleThatIsPulledBackAtAnySpeed) {
   }
 }
 
-TEST(YieldingWall, AHandAtRestPiercesNothingMore) {
+TEST(YieldingWall, PiercesNothingMoreAtRest) {
   anatomy::TissueTable table = yielding_tissues();
   table.layers[1].load_spread_mm = 0.0;
   for (const double muscle_mm : {3.0, 5.0, 12.0}) {
@@ -163,7 +163,7 @@ TEST(YieldingWall, AHandAtRestPiercesNothingMore) {
   }
 }
 
-TEST(YieldingWall, HoldsItsDepressionUnderTheLoadAfterThePuncture) {
+TEST(YieldingWall, HoldsItsDepressionUnderLoadAfterAPuncture) {
   // Against bone right under the skin the wall recoils only as far as the load permits.
   anatomy::TissueTable table = yielding_tissues();
   Driver driver(make_scene({{0, kFat}, {9, kBone}}, haptics::HapticOptions{}, table));
@@ -182,7 +182,7 @@ TEST(YieldingWall, HoldsItsDepressionUnderTheLoadAfterThePuncture) {
 }
 
 /// A server that is prepared again places the needle where it was, and the hand comes back to where it was (S1).
-TEST(YieldingWall, ANeedleThatIsPlacedAgainIsNotPushedOn) {
+TEST(YieldingWall, DoesNotPushAReplacedNeedle) {
   for (const haptics::ForceModel model :
        {haptics::ForceModel::kInsertion, haptics::ForceModel::kCombined, haptics::ForceModel::kProxy}) {
     SCOPED_TRACE(static_cast<int>(model));
@@ -207,7 +207,7 @@ TEST(YieldingWall, ANeedleThatIsPlacedAgainIsNotPushedOn) {
   }
 }
 
-TEST(YieldingWall, ThatGivesWayAgainGivesTheHandNoEnergy) {
+TEST(YieldingWall, GeneratesNoEnergyOverRepeatedPunctures) {
   for (const double speed_mm_per_s : {2.0, 20.0, 100.0}) {
     Driver driver(make_scene({{0, kMuscle}}, haptics::HapticOptions{}, yielding_tissues()));
     driver.state().needle.pressed_mm = 6.0;
@@ -253,7 +253,7 @@ std::shared_ptr<anatomy::VirtualPatient> folded_patient() {
   return patient;
 }
 
-TEST(SoftWall, IsNotLostWhereTheSkinIsUneven) {
+TEST(SoftWall, KeepsContactOnUnevenSkin) {
   // The needle presses on the side of the fold and moves on behind its other side: the skin that it presses stays that
   // of the near side until it gives way.
   anatomy::TissueTable tissues = paper_tissues();

@@ -83,7 +83,7 @@ Matrix6 grip_stiffness(const World& world, double tip_mm) {
   return stiffness;
 }
 
-TEST(ShaftResistance, AddsUpTissueByTissue) {
+TEST(ShaftResistance, SumsOverTissues) {
   const World world = make_world({{0, kFat}, {12, kMuscle}, {24, kLiver}});
   const haptics::ShaftResistance resistance = haptics::shaft_resistance(world.channel, *world.scene, 50.0);
   const double skin = 2.0, fat = 10.0, muscle = 12.0, liver = 26.0;
@@ -100,7 +100,7 @@ TEST(ShaftResistance, AddsUpTissueByTissue) {
   EXPECT_NEAR(resistance.viscous_ns_per_mm, viscous, 0.02 * haptics::contact_area_cm2(r, 2.0 * voxel_mm) + 1e-12);
 }
 
-TEST(ShaftResistance, IsTheSameWithAndWithoutLabelsOfTissueWithoutAWall) {
+TEST(ShaftResistance, IgnoresLabelsOfTissueWithoutAWall) {
   for (const haptics::ForceModel model : {haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
     const std::vector<Slab> slabs{{0, kFat}, {12, kMuscle}, {24, kFat}, {40, kMuscle}};
     double dry_n[2], viscous_ns_per_mm[2];
@@ -143,7 +143,7 @@ TEST(ShaftResistance, HasNoStepsAsTheNeedleSlides) {
   }
 }
 
-TEST(HoldShaft, HasVesicsBed) {
+TEST(HoldShaft, MatchesVesicsFoundation) {
   const World world = make_world({{0, kMuscle}});
   const double tip_mm = 60.0;
   const haptics::HeldShaft shaft =
@@ -159,7 +159,7 @@ TEST(HoldShaft, HasVesicsBed) {
   EXPECT_NEAR((shaft.bed.offset_mm[16] - Vec3(-1, 0, 0)).norm(), 0.0, 1e-12);
 }
 
-TEST(HoldShaft, IsNoStifferThanTheDeviceInBone) {
+TEST(HoldShaft, LimitsStiffnessInBoneToTheDevice) {
   for (const bool has_bending : {false, true}) {
     haptics::NeedleGeometry needle;
     needle.radius_mm = 2.5;
@@ -202,7 +202,7 @@ TEST(HoldShaft, IsAPassiveSpringForTheHand) {
   }
 }
 
-TEST(HoldShaft, HardlyDoesWorkOnAHandThatMovesInACircle) {
+TEST(HoldShaft, DoesAlmostNoWorkAroundACircle) {
   // Forces are kept across the shaft and about the straight one: exact for small turns, here 3 mm and 0.05 rad.
   constexpr int kSteps = 500;
   for (const bool has_bending : {false, true}) {
@@ -224,7 +224,7 @@ TEST(HoldShaft, HardlyDoesWorkOnAHandThatMovesInACircle) {
   }
 }
 
-TEST(HoldShaft, ComesToRestOnABareStylusWithATickOfDelay) {
+TEST(HoldShaft, IsStableOnABareStylusWithOneTickDelay) {
   // 45 g and 50 kg mm^2 without a hand, the wrench of one tick acts during the next but one, the pose is taken a
   // damping time (4 ms) ahead. Without the limit on turning a straight 18 G shaft would ring: 100 mm of muscle are 10 N
   // m/rad.
@@ -258,7 +258,7 @@ TEST(HoldShaft, ComesToRestOnABareStylusWithATickOfDelay) {
   }
 }
 
-TEST(HoldShaft, PushesBackMoreTheFurtherTheHandGoes) {
+TEST(HoldShaft, ForceGrowsWithDisplacement) {
   for (const bool has_bending : {false, true}) {
     const World world = make_world({{0, kMuscle}}, has_bending);
     double before = 0.0;
@@ -284,7 +284,7 @@ TEST(HoldShaft, HasNoStepsAsTheNeedleSlides) {
   }
 }
 
-TEST(React, GivesTheTorqueOfEquationSix) {
+TEST(React, MatchesTheTorqueOfEquationSix) {
   const World world = make_world({{0, kMuscle}});
   const Pose X_PN = displaced(world, 70.0, {2, -1, 0}, {0.03, 0.05, 0.4});
   const haptics::HeldShaft shaft = haptics::hold_shaft(world.channel, *world.scene, X_PN, 70.0, true);
@@ -311,7 +311,7 @@ TEST(React, GivesTheTorqueOfEquationSix) {
   EXPECT_NEAR(reaction.wrench_P.torque_nmm.dot(axis), 0.0, 1e-10);
 }
 
-TEST(React, LetsABedThatHoldsTheTipKeepItsForceFromTheHand) {
+TEST(React, ScalesTheWrenchByItsShareForAStiffBed) {
   // A shaft that turns the grip too stiffly gives a share of all its forces: bed and tip still balance.
   haptics::NeedleGeometry needle;
   needle.radius_mm = 1.0;
@@ -327,7 +327,7 @@ TEST(React, LetsABedThatHoldsTheTipKeepItsForceFromTheHand) {
   EXPECT_NEAR((told.torque_nmm - shaft.share * all.torque_nmm).norm(), 0.0, 1e-10);
 }
 
-TEST(React, TurnsATipForceInAirIntoTheWholeLever) {
+TEST(React, AppliesTheFullLeverToATipForceInAir) {
   const World world = make_world({{0, kMuscle}});
   const haptics::HeldShaft shaft =
       haptics::hold_shaft(world.channel, *world.scene, displaced(world, 0.0, {0, 0, 0}, {0, 0, 0}), 0.0, true);
@@ -347,7 +347,7 @@ TEST(React, BendsASmallTipForceAsACantilever) {
   EXPECT_NEAR(reaction.bent.deflection_mm[16].x(), closed, 1e-9 * closed);
 }
 
-TEST(React, DoesNotCareAboutRoll) {
+TEST(React, IsIndependentOfRoll) {
   const World world = make_world({{0, kMuscle}});
   Vector6 move = (Vector6() << 1.0, 2.0, 0.0, 0.0, 0.0, 0.0).finished();
   const Vector6 still = wrench_at(world, 70.0, move);
@@ -355,7 +355,7 @@ TEST(React, DoesNotCareAboutRoll) {
   EXPECT_NEAR((wrench_at(world, 70.0, move) - still).norm(), 0.0, 1e-9);
 }
 
-TEST(React, LeavesThinNeedlesToTheTissueAndStraightOnesToTheLine) {
+TEST(React, ThinNeedlesBendWithTheTissueAndRigidOnesDoNot) {
   // Hub turned by 5 degrees, 40 mm in muscle: the thin shaft stays near its line, a straight one pushes harder.
   const double tip_mm = 40.0;
   const Vector6 turned = 5.0 / 180.0 * std::numbers::pi * Vector6::Unit(3);
@@ -368,7 +368,7 @@ TEST(React, LeavesThinNeedlesToTheTissueAndStraightOnesToTheLine) {
   EXPECT_LT(std::abs(X_PN.p().y() + reaction.bent.deflection_mm[16].y()), 0.2 * std::abs(X_PN.p().y()));
 }
 
-TEST(Bevel, PushesAwayFromItsFaceWhileTheTipAdvances) {
+TEST(Bevel, DeflectsAnAdvancingTipAwayFromItsFace) {
   haptics::NeedleGeometry needle;
   needle.bevel_share = 0.1;
   const Pose X_PN = needle_pose({1, 2, 3}, Vec3(0.2, 0.1, 1.0).normalized());
@@ -378,7 +378,7 @@ TEST(Bevel, PushesAwayFromItsFaceWhileTheTipAdvances) {
   EXPECT_EQ(haptics::bevel_force_P(needle, X_PN, std::numeric_limits<double>::quiet_NaN()).norm(), 0.0);
 }
 
-TEST(BodyProxies, StayFiniteWhateverComes) {
+TEST(BodyProxies, StayFiniteForAnyInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   const World world = make_world({{0, kMuscle}});
@@ -401,7 +401,7 @@ TEST(BodyProxies, StayFiniteWhateverComes) {
   }
 }
 
-TEST(BodyProxies, SayThatAPoseIsFarOffTheLine) {
+TEST(BodyProxies, FlagAPoseFarOffTheLine) {
   const World world = make_world({{0, kMuscle}});
   for (const double x_mm : {1e4, std::nan(""), 1.0}) {
     const Pose X_PN = Pose::translation({x_mm, 0, 0});

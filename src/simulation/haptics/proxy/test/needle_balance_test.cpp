@@ -50,7 +50,7 @@ TEST(NeedleBalance, SetsTheSpringsInSeries) {
   EXPECT_NEAR(balance.tip_n_per_mm, 0.5 / 1.5, 1e-12);
 }
 
-TEST(TipLaw, ThresholdAlongIsTheGreatestBorneForceInThatDirection) {
+TEST(TipLaw, ThresholdIsTheGreatestForceInItsDirection) {
   Random random(5);
   for (int i = 0; i < 50; ++i) {
     haptics::TipLaw law = border_law(2.0, 0.5);

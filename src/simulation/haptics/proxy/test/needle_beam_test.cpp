@@ -80,7 +80,7 @@ TEST(NeedleBeam, SharesItsLoadWithOneSpring) {
   }
 }
 
-TEST(NeedleBeam, IsProppedByAStiffSpring) {
+TEST(NeedleBeam, IsSupportedByAStiffSpring) {
   // Force F at the tip, a support at a: the support bears R = F (3 L - a) / (2 a), the tip's own formula less its.
   const haptics::NeedleBeam beam = beam_of(15);
   const int support = 9;
@@ -94,7 +94,7 @@ TEST(NeedleBeam, IsProppedByAStiffSpring) {
   EXPECT_NEAR(solution.per_tip_force_mm_n[at(support)], 0.0, 1e-8);
 }
 
-TEST(NeedleBeam, LiesInAFoundationAsHetenyiSays) {
+TEST(NeedleBeam, MatchesHetenyisElasticFoundation) {
   // Half-infinite bed of k N/mm^2 from the clamp on, force at the far, free end: w = 2 F b / k, b = (k / 4 E I)^(1/4).
   // b L = 12 leaves exp(-12) of the clamp. Springs at nodes are the trapezoidal rule of a bed: at its end they differ
   // by terms of (b h)^2, which must fall as the square of the spacing.
@@ -137,7 +137,7 @@ TEST(NeedleBeam, AgreesWithADenseSolverInRandomBeds) {
   }
 }
 
-TEST(NeedleBeam, FollowsAShiftedAndTurnedBedOnlyAsFarAsItMust) {
+TEST(NeedleBeam, ObeysBettisReciprocity) {
   // Betti: the work of one load on the other's deflection is the same both ways.
   const haptics::NeedleBeam beam = beam_of(17);
   haptics::BeamBed bed;
@@ -151,7 +151,7 @@ TEST(NeedleBeam, FollowsAShiftedAndTurnedBedOnlyAsFarAsItMust) {
   }
 }
 
-TEST(NeedleBeam, TellsTheStiffnessThatTheGripMeets) {
+TEST(NeedleBeam, ComputesTheStiffnessAtTheGrip) {
   // Against the supports of a shifted and of a turned grip; a rigid shaft adds up its springs.
   Random random(11);
   for (int trial = 0; trial < 50; ++trial) {
@@ -186,7 +186,7 @@ TEST(NeedleBeam, TellsTheStiffnessThatTheGripMeets) {
   }
 }
 
-TEST(NeedleBeam, IsStiffByTubeAndStylet) {
+TEST(NeedleBeam, DerivesStiffnessFromTubeAndStylet) {
   haptics::NeedleGeometry needle;
   needle.radius_mm = 0.359;  // 22 G
   needle.young_gpa = 200.0;
@@ -198,7 +198,7 @@ TEST(NeedleBeam, IsStiffByTubeAndStylet) {
               1e-9 * solid);
 }
 
-TEST(NeedleBeam, LimitsItsDeflectionAndSaysSo) {
+TEST(NeedleBeam, LimitsItsDeflectionAndFlagsIt) {
   const haptics::NeedleBeam beam = beam_of(17);
   haptics::BeamBed bed;
   bed.stiffness_n_per_mm[16] = 1.0;
@@ -210,7 +210,7 @@ TEST(NeedleBeam, LimitsItsDeflectionAndSaysSo) {
   }
 }
 
-TEST(NeedleBeam, StaysFiniteOnNumbersThatAreNone) {
+TEST(NeedleBeam, StaysFiniteForNonFiniteInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, infinity, -infinity, -1.0, 0.0, 1e300}) {

@@ -30,7 +30,7 @@ INSTANTIATE_TEST_SUITE_P(SpeedAndRate, ProxySpeeds,
                          ::testing::Values(std::pair{2.0, 1000.0}, std::pair{10.0, 1000.0}, std::pair{50.0, 1000.0},
                                            std::pair{10.0, 4000.0}));
 
-TEST_P(ProxySpeeds, WallsGiveWayAtTheirPunctureForceAndInOrder) {
+TEST_P(ProxySpeeds, WallsBreakInOrderAtTheirPunctureForce) {
   const auto [speed, rate] = GetParam();
   Driver driver(make_scene(liver_way(), haptics::ForceModel::kProxy), rate);
   const auto samples = driver.move(60.0, speed);
@@ -43,7 +43,7 @@ TEST_P(ProxySpeeds, WallsGiveWayAtTheirPunctureForceAndInOrder) {
   }
 }
 
-TEST(ProxyNeedle, TissueIsEnteredAfterItsWallGaveWay) {
+TEST(ProxyNeedle, EntersATissueAfterItsWallIsPierced) {
   using enum telemetry::EventKind;
   Driver driver(make_scene(liver_way(), haptics::ForceModel::kProxy));
   EXPECT_EQ(
@@ -58,7 +58,7 @@ TEST(ProxyNeedle, DropsToTheResistanceInsideAfterAWall) {
   EXPECT_NEAR(axial(samples.back()), 0.6 + 0.005 * 5.0, 0.01);  // cutting force of the liver + c v of its HU
 }
 
-TEST(ProxyNeedle, FeelsMuscleFromTheGradientWhetherLabelledOrNot) {
+TEST(ProxyNeedle, RendersMuscleFromTheGradientWithOrWithoutLabels) {
   Driver labelled(make_scene({{0, kFat}, {20, kMuscle}}, haptics::ForceModel::kProxy));
   Driver unlabelled(make_unlabelled_scene({{0, kFat}, {20, kMuscle}}, haptics::ForceModel::kProxy));
   const double with_labels = peak_between(labelled.move(50.0, 5.0), 15.0, 30.0);
@@ -68,12 +68,12 @@ TEST(ProxyNeedle, FeelsMuscleFromTheGradientWhetherLabelledOrNot) {
   EXPECT_NEAR(with_labels, without, 0.1);
 }
 
-TEST(ProxyNeedle, ComesOutOfMuscleWithoutAThreshold) {
+TEST(ProxyNeedle, ExitsMuscleWithoutAThreshold) {
   Driver driver(make_unlabelled_scene({{0, kMuscle}, {20, kFat}}, haptics::ForceModel::kProxy));
   EXPECT_LT(peak_between(driver.move(50.0, 5.0), 10.0, 40.0), 0.35);  // R0 + c v of muscle, and no T_N
 }
 
-TEST(ProxyNeedle, SecondTimeInTheSameHoleNeedsNoPuncture) {
+TEST(ProxyNeedle, ReentersItsHoleWithoutAPuncture) {
   Driver driver(make_scene(liver_way(), haptics::ForceModel::kProxy));
   driver.move(50.0, 10.0);
   EXPECT_TRUE(punctures(driver.move(20.0, 10.0)).empty());
@@ -83,7 +83,7 @@ TEST(ProxyNeedle, SecondTimeInTheSameHoleNeedsNoPuncture) {
   EXPECT_EQ(driver.state().needle.path.is_open, true);
 }
 
-TEST(ProxyNeedle, ItsOwnHoleHasNoBordersAndNothingToCut) {
+TEST(ProxyNeedle, ItsOwnHoleHasNoBordersAndNoCutting) {
   Driver driver(make_unlabelled_scene({{0, kMuscle}, {15, kFat}, {30, kMuscle}}, haptics::ForceModel::kProxy));
   driver.move(45.0, 5.0);
   for (const telemetry::TickSample& s : driver.move(5.0, 5.0)) {  // out of fat into muscle, on the way back
@@ -105,7 +105,7 @@ TEST(ProxyNeedle, BoneStopsTheNeedleWithOrWithoutItsLabel) {
   }
 }
 
-TEST(ProxyNeedle, StiffnessThatIsReadAnewIsNotFeltAsABlow) {
+TEST(ProxyNeedle, StiffnessChangeCausesNoForceStep) {
   // Soft fat that needs force, then the stiffer wall of the liver: the force must rise from where it was.
   anatomy::TissueTable tissues = paper_tissues();
   tissues.tissues[2].cutting_n = 1.0;
@@ -120,7 +120,7 @@ TEST(ProxyNeedle, StiffnessThatIsReadAnewIsNotFeltAsABlow) {
   }
 }
 
-TEST(ProxyNeedle, AWallSofterThanTheTissueBeforeItMustBePiercedToo) {
+TEST(ProxyNeedle, PiercesAWallSofterThanTheTissueBeforeIt) {
   anatomy::TissueTable tissues = paper_tissues();
   tissues.layers[2].delta_x_mm = 5.0;  // gives way some millimetres in, like the dura
   tissues.transfer.laws[1].stiffness_n_per_mm = 5.0;
@@ -138,7 +138,7 @@ TEST(ProxyNeedle, SteadyForceIsTheSameAtAnyRate) {
   EXPECT_NEAR(forces[0], forces[2], 2e-3);
 }
 
-TEST(ProxyNeedle, SlidesOnClosedSkinWithFrictionAndDoesNotPassThrough) {
+TEST(ProxyNeedle, SlidesOnClosedSkinWithFriction) {
   Driver driver(make_scene(liver_way(), haptics::ForceModel::kProxy));
   driver.move(1.5, 5.0);  // presses with less than the puncture force
   telemetry::TickSample sample;
@@ -164,7 +164,7 @@ TEST(ProxyNeedle, ComposesTheTotalFromItsParts) {
   }
 }
 
-TEST(Combined, TakesWallsAndCuttingFromPaperAAndBordersAndFrictionFromTheProxies) {
+TEST(Combined, CombinesPaperAWallsWithProxyBorders) {
   Driver driver(make_scene(liver_way(), haptics::ForceModel::kCombined));
   const auto samples = driver.move(60.0, 5.0);
   EXPECT_EQ(punctures(samples), (std::vector<int>{kSkinLayer, kCapsuleLayer}));
@@ -176,7 +176,7 @@ TEST(Combined, TakesWallsAndCuttingFromPaperAAndBordersAndFrictionFromTheProxies
   EXPECT_LT(last.f_body_axial_n, -0.1);
 }
 
-TEST(Combined, FeelsUnlabelledTissueThroughTheTipProxy) {
+TEST(Combined, RendersUnlabelledTissueThroughTheTipProxy) {
   Driver driver(make_unlabelled_scene({{0, kFat}, {20, kMuscle}}, haptics::ForceModel::kCombined));
   const auto samples = driver.move(50.0, 5.0);
   EXPECT_EQ(punctures(samples), (std::vector<int>{kSkinLayer}));
@@ -184,7 +184,7 @@ TEST(Combined, FeelsUnlabelledTissueThroughTheTipProxy) {
   EXPECT_NEAR(axial(samples.back()), 0.2, 1e-6);      // R0 of muscle
 }
 
-TEST(SafeStart, InsideTheBodyGivesNoForceAndIsTakenAsInserted) {
+TEST(SafeStart, InsideTheBodyStartsInsertedWithoutForce) {
   for (const haptics::ForceModel model :
        {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
     Driver driver(make_scene(liver_way(), model));
@@ -200,7 +200,7 @@ TEST(SafeStart, InsideTheBodyGivesNoForceAndIsTakenAsInserted) {
   }
 }
 
-TEST(SafeStart, OnBoneItIsNotPierced) {
+TEST(SafeStart, DoesNotPierceBone) {
   for (const haptics::ForceModel model :
        {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
     for (const double in_bone_mm : {0.3, 1.0, 3.0}) {
@@ -214,7 +214,7 @@ TEST(SafeStart, OnBoneItIsNotPierced) {
   }
 }
 
-TEST(SafeStart, AJumpStartsAfreshWithoutAForceStep) {
+TEST(SafeStart, RestartsAfterAJumpWithoutAForceStep) {
   for (const haptics::ForceModel model :
        {haptics::ForceModel::kInsertion, haptics::ForceModel::kProxy, haptics::ForceModel::kCombined}) {
     Driver driver(make_scene(liver_way(), model));
@@ -234,7 +234,7 @@ INSTANTIATE_TEST_SUITE_P(All, Models,
                                            haptics::ForceModel::kCombined),
                          [](const auto& the) { return std::string(to_string(the.param)); });
 
-TEST_P(Models, StayFiniteAndNeverAllocateWhateverComesIn) {
+TEST_P(Models, StayFiniteAndNeverAllocateForAnyInput) {
   const auto scene = make_scene({{0, kFat}, {12, kMuscle}, {24, kLiver}, {60, kBone}}, GetParam());
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -281,7 +281,7 @@ TEST_P(Models, StayFiniteAndNeverAllocateWhateverComesIn) {
   EXPECT_GT(flagged, 500);
 }
 
-TEST(ProxyScene, RefusesWhatItCannotUse) {
+TEST(ProxyScene, RefusesAMissingCtTransferOrLabels) {
   haptics::HapticOptions options;
   options.force_model = haptics::ForceModel::kProxy;
   auto no_ct = layered_patient(liver_way());

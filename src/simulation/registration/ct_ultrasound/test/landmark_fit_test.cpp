@@ -56,13 +56,13 @@ TEST(LandmarkFit, NamesTheWorstPair) {
   EXPECT_NE(refusal(ct(), us).find("lesion"), std::string::npos);
 }
 
-TEST(LandmarkFit, RefusesAnotherScale) {
+TEST(LandmarkFit, RefusesAScaleDifference) {
   NamedPoints us = ultrasound();
   for (NamedPoint& point : us) point.p *= 1.1;
   EXPECT_NE(refusal(ct(), us).find("scale 0.909"), std::string::npos);
 }
 
-TEST(LandmarkFit, RefusesWhatCannotBeFitted) {
+TEST(LandmarkFit, RefusesDegenerateLandmarks) {
   NamedPoints us = ultrasound();
   us.resize(2);
   EXPECT_NE(refusal(ct(), us).find("at least 3"), std::string::npos);

@@ -135,7 +135,7 @@ TEST(PoseMetric, IsIndependentOfTheNumberOfThreads) {
   });
 }
 
-TEST(PoseMetric, ReadsItsMotionsBackFromPoses) {
+TEST(PoseMetric, RoundTripsMotionsThroughPoses) {
   for (const Motion& motion : some_motions())
     EXPECT_NEAR((detail::motion_of(detail::pose_of(motion, kCentre), kCentre) - motion).norm(), 0.0, 1e-12);
 }

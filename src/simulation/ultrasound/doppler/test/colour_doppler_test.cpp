@@ -99,7 +99,7 @@ TEST(ColourDoppler, MeasuresTheCosineOfTheAngle) {
   }
 }
 
-TEST(ColourDoppler, SeesNothingAtARightAngle) {
+TEST(ColourDoppler, MeasuresNothingAtARightAngle) {
   ColourDoppler doppler(tube_flow(40.0));
   doppler.settings = quiet(60.0);
   const DopplerInput input = look(std::numbers::pi / 2.0);
@@ -149,7 +149,7 @@ TEST(ColourDoppler, ShowsNoiseOnlyWhenTurnedUp) {
   EXPECT_GT(shown_cells(doppler.render(input)), 0.5 * static_cast<double>(frame.has_flow.size()));
 }
 
-TEST(ColourDoppler, IsAFunctionOfItsInput) {
+TEST(ColourDoppler, IsDeterministic) {
   const auto flow = tube_flow(40.0);
   const auto frame_of = [&](std::uint64_t seed) {
     ColourDoppler doppler(flow);
@@ -160,7 +160,7 @@ TEST(ColourDoppler, IsAFunctionOfItsInput) {
   EXPECT_NE(frame_of(1).velocity_cm_per_s, frame_of(2).velocity_cm_per_s);
 }
 
-TEST(ColourDoppler, KeepsThePastWhilePersisting) {
+TEST(ColourDoppler, PersistenceBlendsEarlierFrames) {
   ColourDoppler doppler(tube_flow(40.0));
   doppler.settings = quiet(60.0);
   doppler.settings.persistence = 0.9;
@@ -172,7 +172,7 @@ TEST(ColourDoppler, KeepsThePastWhilePersisting) {
   EXPECT_LT(measure_middle(doppler.render(away), away).cells, 3);
 }
 
-TEST(ColourDoppler, AllocatesNothingPerFrame) {
+TEST(ColourDoppler, NeverAllocatesPerFrame) {
   ColourDoppler doppler(tube_flow(40.0));
   doppler.settings = quiet(60.0);
   const DopplerInput input = look(0.5);
@@ -278,7 +278,7 @@ TEST(DopplerSettings, TieScaleAndPulseRate) {
   EXPECT_NEAR(usable_scale_cm_per_s(settings, 154.0), nyquist_cm_per_s(5000.0, 2.5), 1e-9);
 }
 
-TEST(DopplerSettings, RefuseWhatIsOutOfRange) {
+TEST(DopplerSettings, RefuseOutOfRangeValues) {
   EXPECT_TRUE(check(DopplerSettings{}).has_value());
   DopplerSettings settings;
   settings.scale_cm_per_s = 1000.0;

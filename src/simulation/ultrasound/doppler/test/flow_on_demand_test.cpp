@@ -43,14 +43,14 @@ TEST(FlowOnDemand, IsComputedWhenItIsFirstUsed) {
   EXPECT_GT(first->velocity_P(Vec3::Zero(), 0.0).norm(), 500.0);
 }
 
-TEST(FlowOnDemand, IsNotPossibleWithoutARowOfTheTable) {
+TEST(FlowOnDemand, IsUnavailableWithoutATableRow) {
   FlowOnDemand flow(patient_with("unknown", 4.0), make_steady_table(60.0, 2.0));
   EXPECT_FALSE(flow.is_possible());
   EXPECT_FALSE(flow.poll());
   EXPECT_FALSE(flow.is_computing());
 }
 
-TEST(FlowOnDemand, IsNotPossibleInVesselsThatAreTooSmall) {
+TEST(FlowOnDemand, IsUnavailableInTooSmallVessels) {
   FlowOnDemand flow(patient_with("tube", 0.6), make_steady_table(60.0, 2.0));
   EXPECT_TRUE(flow.is_possible());
   EXPECT_FALSE(flow.poll());

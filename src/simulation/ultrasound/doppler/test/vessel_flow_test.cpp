@@ -115,7 +115,7 @@ TEST(VesselFlow, JoinsTwoSourcesIntoOneSink) {
   EXPECT_LT((*flow)->velocity_P(0.5 * liver, 0.0).x(), -50.0);
 }
 
-TEST(VesselFlow, ComesFromTheWideEndThoughABranchIsLongerAndHigher) {
+TEST(VesselFlow, FlowsFromTheWideEnd) {
   const auto is_near_line = [](const Vec3& p, const Vec3& a, const Vec3& b, double radius) {
     return distance_mm(Segment{a, b}, p) < radius;
   };
@@ -132,7 +132,7 @@ TEST(VesselFlow, ComesFromTheWideEndThoughABranchIsLongerAndHigher) {
   EXPECT_GT((*flow)->velocity_P(Vec3(45, 0, 20), systole_s).z(), 500.0);
 }
 
-TEST(VesselFlow, GoesTheRightWayInTheEmbeddedPatient) {
+TEST(VesselFlow, HasCorrectDirectionsInTheEmbeddedPatient) {
   const Vec3 aorta = peak_flow(Vec3(4.0, -4.0, -60.0));
   EXPECT_LT(aorta.z(), -700.0);
   EXPECT_GT(peak_flow(Vec3(-22.0, 4.0, -60.0)).z(), 150.0);  // inferior vena cava, below the renal veins
@@ -156,7 +156,7 @@ TEST(VesselFlow, GoesTheRightWayInTheEmbeddedPatient) {
   }
 }
 
-TEST(VesselFlow, PulsesInArteriesAndIsSteadyInThePortalVein) {
+TEST(VesselFlow, PulsesInArteriesAndIsSteadyInPortalVein) {
   const FlowTable table = shipped_table();
   const auto range = [&](const char* label) {
     const FlowRule* rule = table.find(label, anatomy::LabelTable{});
@@ -186,7 +186,7 @@ TEST(FlowWaveform, IsPeriodicAndContinuous) {
   }
 }
 
-TEST(FlowTable, ChoosesARuleByTheCompany) {
+TEST(FlowTable, SelectsARuleByAdjacentVessels) {
   const FlowTable table = shipped_table();
   anatomy::LabelTable with_trunk;
   with_trunk.labels = {{1, "portal_vein_and_splenic_vein", "vessel", {}}, {2, "portal_vein", "vessel", {}}};
@@ -196,7 +196,7 @@ TEST(FlowTable, ChoosesARuleByTheCompany) {
   EXPECT_EQ(table.find("liver", anatomy::LabelTable{}), nullptr);
 }
 
-TEST(VesselFlow, SaysWhichVesselsHaveNoFlow) {
+TEST(VesselFlow, NamesVesselsWithoutFlow) {
   const anatomy::VirtualPatient patient =
       make_tube_patient(Vec3(30, 110, 110), Vec3(1, 1, 1), {{"vitelline duct", is_in_half_ring}});
   const auto flow = make_vessel_flow(patient, shipped_table());

@@ -45,7 +45,7 @@ double along_scanline(double x0_mm, double y0_mm, double y_mm) {
   return x0_mm * (y_mm + radius_mm) / (y0_mm + radius_mm);
 }
 
-TEST(Penumbra, OnTheEdgeHalfOfTheApertureIsLeftBothWays) {
+TEST(Penumbra, AtTheEdgeHalvesTheApertureInBothDirections) {
   constexpr double kEdge_mm = 15.0, kTop_mm = 26.0;
   const Shade shade(slab_scene(box_for(convex(), kShadeDepth_mm), TestTissue::kLossless,
                                {kEdge_mm, kTop_mm, 36.0, TestTissue::kBone}));
@@ -92,7 +92,7 @@ TEST(Penumbra, SoundPassesAroundASmallObstacle) {
   EXPECT_GT(shade.at(0.0, 105.0), shade.at(0.0, 60.0) + 3.0);
 }
 
-TEST(Penumbra, LeavesTissueWithoutObstaclesAsItIs) {
+TEST(Penumbra, DoesNotChangeTissueWithoutObstacles) {
   const Shade shade(homogeneous_scene(box_for(convex(), kShadeDepth_mm), TestTissue::kLossless));
   for (const double x_mm : {-40.0, 0.0, 40.0}) EXPECT_NEAR(shade.at(x_mm, 80.0), 0.0, 1e-3);
 }
@@ -110,7 +110,7 @@ double spectral_gain_db(const Beam& beam, double nepers_per_mhz) {
   return 20.0 * std::log10(sum / all);
 }
 
-TEST(Downshift, AddsWhatTheSpectrumsLowPartKeeps) {
+TEST(Downshift, RaisesTheLevelByTheSpectralGain) {
   const Transducer transducer = convex();
   Artefacts shifting = losses();
   shifting.downshift = true;

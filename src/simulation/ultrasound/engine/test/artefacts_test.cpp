@@ -12,7 +12,7 @@ int count_on(const Artefacts& a) {
          a.contact_loss + a.clutter + a.noise;
 }
 
-TEST(Artefacts, EachNameSwitchesOneOff) {
+TEST(Artefacts, DisablesOneByName) {
   const auto names = artefact_names();
   EXPECT_EQ(names.size(), sizeof(Artefacts));
   Artefacts together;
@@ -25,13 +25,13 @@ TEST(Artefacts, EachNameSwitchesOneOff) {
   }
 }
 
-TEST(Artefacts, AllSwitchesEveryOneOff) {
+TEST(Artefacts, AllDisablesEveryArtefact) {
   Artefacts artefacts;
   ASSERT_TRUE(switch_off(artefacts, "all"));
   EXPECT_EQ(count_on(artefacts), 0);
 }
 
-TEST(Artefacts, UnknownNameListsTheKnownAndChangesNothing) {
+TEST(Artefacts, UnknownNameListsTheKnownOnes) {
   Artefacts artefacts;
   for (const char* name : {"", "Noise", "ghosts"}) {
     const Status status = switch_off(artefacts, name);

@@ -60,7 +60,7 @@ TEST(Beam, PulseHasTheTransducersBandwidth) {
   EXPECT_NEAR(spectrum / middle, 0.5, 1e-6);
 }
 
-TEST(Beam, LateralWidthAtTheFocusIsThatOfTheExactApertures) {
+TEST(Beam, LateralWidthAtTheFocusMatchesTheExactAperture) {
   const Transducer t = example_transducer();
   const Beam beam = make_beam(t, 3.0, 60.0);
   const double exact_mm = width_mm(
@@ -102,7 +102,7 @@ TEST(Beam, SliceIsThinnestNearTheLensFocus) {
   EXPECT_GT(beam.elevation_sigma_mm(160.0), 2.0 * best_mm);
 }
 
-TEST(Beam, WidthsArePositiveAndWithoutStepsAtEveryDepth) {
+TEST(Beam, WidthsArePositiveAndContinuous) {
   const auto transducers = load_transducers(data_dir() / "transducers.toml");
   ASSERT_TRUE(transducers) << transducers.error().text();
   for (const Transducer& t : *transducers) {

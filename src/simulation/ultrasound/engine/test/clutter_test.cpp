@@ -47,7 +47,7 @@ TEST(TissueClutter, IsStrongestBehindTheNearWallOfShallowFluid) {
   EXPECT_LT(middle_db, near_db - 6.0);
 }
 
-TEST(TissueClutter, IsMissingWhereNothingReturns) {
+TEST(TissueClutter, IsAbsentWithoutEchoes) {
   const Transducer transducer = convex();
   Artefacts artefacts = no_artefacts();
   artefacts.clutter = true;
@@ -56,7 +56,7 @@ TEST(TissueClutter, IsMissingWhereNothingReturns) {
   EXPECT_LT(level_db(patch_at(engine.render({}), 0.0, 20.0, 70.0, 100.0)), -60.0);
 }
 
-TEST(TissueClutter, OfAStrongReflectorIsThatOfTissue) {
+TEST(TissueClutter, IgnoresAStrongReflector) {
   // Bone across the image: its echo is 50 dB above the tissue, clutter stays below the tissue beside it.
   const Transducer transducer = convex();
   const TestSlab bone{10.0, 60.0, 70.0, TestTissue::kBone};

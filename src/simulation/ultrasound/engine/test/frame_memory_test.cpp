@@ -103,7 +103,7 @@ std::size_t differences(const std::vector<float>& a, const std::vector<float>& b
 
 /// Every shot once behind every other, in one engine that is used on; frames of other patients and transducers are
 /// made between them.
-TEST(FrameMemory, EngineGivesTheSameBitsAfterAnyOtherFrame) {
+TEST(FrameMemory, EngineIsIndependentOfEarlierFrames) {
   const Transducer transducers[] = {convex(), linear()};
   for (std::size_t t = 0; t < 2; ++t) {
     const Transducer &transducer = transducers[t], &other_transducer = transducers[1 - t];
@@ -173,7 +173,7 @@ ScanPicture picture_of(PictureMaker& maker, const std::shared_ptr<const VesselFl
   return maker.make(request, ask.detail, seed);
 }
 
-TEST(FrameMemory, PictureWithoutPersistenceIsTheSameAfterAnyOther) {
+TEST(FrameMemory, ImageWithoutPersistenceIgnoresEarlierFrames) {
   const Transducer transducer = convex();
   const ScenePtr scene = make_rods_scene(transducer, 0.2);
   const auto flow = make_flow();
@@ -195,7 +195,7 @@ TEST(FrameMemory, PictureWithoutPersistenceIsTheSameAfterAnyOther) {
   }
 }
 
-TEST(FrameMemory, ColourThatIsSwitchedOnAgainHasNoOldFrameInIt) {
+TEST(FrameMemory, ReenabledColourContainsNoOldFrame) {
   const Transducer transducer = convex();
   const ScenePtr scene = make_rods_scene(transducer, 0.2);
   const auto flow = make_flow();

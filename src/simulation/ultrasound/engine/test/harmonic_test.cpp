@@ -29,7 +29,7 @@ Acquisition imaging(bool is_harmonic, double frequency_mhz, const Artefacts& art
   return acquisition;
 }
 
-TEST(HarmonicBeam, IsThinnerThanTheBeamThatMakesItAndWiderThanOneOfItsOwnFrequency) {
+TEST(HarmonicBeam, WidthLiesBetweenTransmitAndSameFrequencyBeams) {
   const Beam harmonic = make_harmonic_beam(array(), kReceived_mhz, kFocus_mm);
   const Beam transmitted = make_beam(array(), kTransmitted_mhz, kFocus_mm);
   const Beam same = make_beam(array(), kReceived_mhz, kFocus_mm);
@@ -71,7 +71,7 @@ TEST(HarmonicShare, GrowsWithDepthFastestAtTheFocus) {
   EXPECT_EQ(harmonic_share(make_beam(array(), kReceived_mhz, kFocus_mm), 10.0), 1.0) << "a fundamental";
 }
 
-TEST(HarmonicFrequency, IsTwiceAFrequencyOfTheBandOrThereIsNone) {
+TEST(HarmonicFrequency, IsTwiceABandFrequencyOrNone) {
   Transducer transducer = convex();  // 2 to 5 MHz
   EXPECT_EQ(harmonic_mhz(transducer, 3.5), 4.0);
   EXPECT_EQ(harmonic_mhz(transducer, 4.6), 4.6);
@@ -101,7 +101,7 @@ double point_width_mm(bool is_harmonic, double frequency_mhz) {
   return full_width(across) * frame.geometry.line_spacing_mm(kFocus_mm);
 }
 
-TEST(HarmonicImage, ShowsAPointThinnerThanTheTransmittedFrequencyDoes) {
+TEST(HarmonicImage, PointIsThinnerThanAtTheTransmitFrequency) {
   const double ratio = point_width_mm(true, kReceived_mhz) / point_width_mm(false, kTransmitted_mhz);
   EXPECT_NEAR(ratio, 1.0 / std::sqrt(3.0), 0.03);
 }
@@ -147,7 +147,7 @@ double level_at_db(const BasebandFrame& frame, double depth_mm) {
   return level_db(patch_at(frame, 0.0, 15.0, depth_mm - 4.0, depth_mm + 4.0));
 }
 
-TEST(HarmonicImage, LosesMoreOnTheWayAndGainsFromTheTissue) {
+TEST(HarmonicImage, AttenuatesMoreAndBuildsUpInTissue) {
   Artefacts artefacts = no_artefacts();
   artefacts.attenuation = true;
   const ScenePtr scene = homogeneous_scene(box_for(array(), 120.0, 2.0), TestTissue::kTissue);
@@ -162,7 +162,7 @@ TEST(HarmonicImage, LosesMoreOnTheWayAndGainsFromTheTissue) {
   EXPECT_NEAR(fall_h - fall_f, gained_db - 14.0, 1.5);
 }
 
-TEST(HarmonicLevels, AreThoseOfTheShareAndAreMadeUpForByAGain) {
+TEST(HarmonicLevels, FollowTheShareAndAreCompensatedByGain) {
   const Beam beam = make_harmonic_beam(array(), kReceived_mhz, kFocus_mm);
   const ScanGeometry geometry = make_scan_geometry(array(), 120.0, 128, 512);
   const std::vector<float> levels = harmonic_levels(beam, geometry);

@@ -28,7 +28,7 @@ double shadow_db(BMode& engine, const NeedleEcho& needle, double from_mm, double
   return 10.0 * std::log10(power[1] / power[0]);
 }
 
-TEST(NeedleEffects, ShadowsAsMuchAsItCovers) {
+TEST(NeedleEffects, ShadowDepthMatchesTheCoveredAperture) {
   BMode engine = engine_in(TestTissue::kLossless);
   const double one_way_mm = std::numbers::sqrt2 * seen(engine, {}).beam.elevation_sigma_mm(40.0);
   const auto shaft = shaft_to({45.0, 40.0, 0.0}, in_plane(0.5 * kPi), 90.0);
@@ -42,7 +42,7 @@ TEST(NeedleEffects, ShadowsAsMuchAsItCovers) {
   }
 }
 
-TEST(NeedleEffects, ShadowOfACrossingNeedleFills) {
+TEST(NeedleEffects, ShadowOfACrossingNeedleFillsWithDepth) {
   BMode engine = engine_in(TestTissue::kLossless);
   const auto shaft = shaft_to({0.0, 30.0, 40.0}, Vec3::UnitZ(), 80.0);
   const NeedleEcho needle = needle_of(shaft);
@@ -52,7 +52,7 @@ TEST(NeedleEffects, ShadowOfACrossingNeedleFills) {
   EXPECT_LT(far_db, 0.0);
 }
 
-TEST(NeedleEffects, GivesWayWithPressedTissue) {
+TEST(NeedleEffects, MovesWithPressedTissue) {
   const ScenePtr scene = homogeneous_scene(box_for(default_convex(), 100.0, 2.0), TestTissue::kWater);
   BMode engine(scene, default_convex(), shallow());
   const auto shaft = shaft_to({40.0, 16.0, 0.0}, in_plane(0.5 * kPi), 80.0);
@@ -110,7 +110,7 @@ TEST(NeedleEffects, DragPointsAlongTheTip) {
   EXPECT_EQ(frame.drag.reach_mm, 0.0F);
 }
 
-TEST(NeedleEffects, NonsenseLeavesThePictureAsItWas) {
+TEST(NeedleEffects, IgnoresInvalidNeedles) {
   BMode engine = engine_in(TestTissue::kLossless);
   const BasebandFrame none = seen(engine, {});
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kHuge = std::numeric_limits<double>::infinity();

@@ -116,7 +116,7 @@ TEST(NeedleImage, LevelFallsWithTheTilt) {
   }
 }
 
-TEST(NeedleImage, LevelDoesNotDependOnLinesSamplesOrDepth) {
+TEST(NeedleImage, LevelIsIndependentOfLinesSamplesAndDepth) {
   for (const double angle_deg : {90.0, 80.0})
     for (const auto& [lines, samples] : {std::pair{96, 640}, std::pair{256, 640}, std::pair{128, 1024}}) {
       NeedleAlone engine(shallow(lines, samples));
@@ -138,7 +138,7 @@ TEST(NeedleImage, ThickerNeedlesEchoMore) {
   EXPECT_NEAR(peak_of(seen(engine, needle), 64).level_db, level_db - 6.02, 0.3);
 }
 
-TEST(NeedleImage, DimsBesideThePlaneAsTheBeamDoes) {
+TEST(NeedleImage, DimsOutsideThePlaneLikeTheBeam) {
   NeedleAlone engine;
   const double sigma_mm = seen(engine, {}).beam.elevation_sigma_mm(60.0);
   const auto level_db = [&](double sigmas) {
@@ -167,7 +167,7 @@ TEST(NeedleImage, IsADotAcrossThePlane) {
   EXPECT_NEAR(bright * frame.geometry.line_spacing_mm(60.0), width_mm, 2.0 * frame.geometry.line_spacing_mm(60.0));
 }
 
-TEST(NeedleImage, TipOutshinesASteepShaft) {
+TEST(NeedleImage, TipIsBrighterThanASteepShaft) {
   NeedleAlone engine;
   const Vec3 tip(0.0, 70.0, 0.0);
   const auto shaft = shaft_to(tip, in_plane(15.0 * kPi / 180.0));

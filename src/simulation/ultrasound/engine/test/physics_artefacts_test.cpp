@@ -24,7 +24,7 @@ double echo_db(const BasebandFrame& frame, double depth_mm, double reach_mm = 1.
   return peak_db(envelope_patch(frame, {middle - 8, middle + 8, depth_mm - reach_mm, depth_mm + reach_mm}));
 }
 
-TEST(Reverberation, RepeatsASmoothBorderAtMultiplesOfItsDepth) {
+TEST(Reverberation, RepeatsABorderAtMultiplesOfItsDepth) {
   const Transducer transducer = linear();
   constexpr double kDepth_mm = 9.0;
   const TestLayer layers[] = {{kDepth_mm, TestTissue::kWater}, {1e9, TestTissue::kGas}};
@@ -96,7 +96,7 @@ TEST(Mirror, ShowsALesionAgainBehindGas) {
   EXPECT_NEAR(level_at(on, Vec3(-6.0, 45.0, 0.0)), level_at(off, Vec3(-6.0, 45.0, 0.0)), 0.1);
 }
 
-TEST(RangeDistortion, ShowsAPointBehindASlowLayerTooDeep) {
+TEST(RangeDistortion, ShowsAPointTooDeepBehindASlowLayer) {
   const Transducer transducer = linear();
   const SceneBox box = box_for(transducer, transducer.depth_mm, 0.5);
   constexpr double kPoint_mm = 30.0, kThick_mm = 12.0;
@@ -151,7 +151,7 @@ TEST(Refraction, DarkensBehindTheEdgesOfACylinder) {
 }
 
 /// Scanlines of a phased array leave one point: what divides by their distance must not lose the picture.
-TEST(Refraction, LeavesThePictureOfEveryKindOfTransducer) {
+TEST(Refraction, KeepsTheImageFiniteForEveryTransducer) {
   for (const char* name : {"C5-2", "L14-5", "P4-2", "liver-sweep", "4DC7-3"}) {
     const Transducer transducer = shipped(name);
     const TestRod rods[] = {{0.0, 12.0, 5.0, TestTissue::kSlow}};

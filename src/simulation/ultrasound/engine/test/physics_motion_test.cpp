@@ -36,7 +36,7 @@ Match best_match(const EchoPatch& still, const BasebandFrame& moved, const Patch
   return best;
 }
 
-TEST(Motion, OfTheTransducerAcrossShiftsTheSpeckleTheOtherWay) {
+TEST(Motion, LateralMotionShiftsSpeckleOppositely) {
   const Transducer transducer = linear();
   BMode engine(lossless_block(transducer), transducer, plain(transducer));
   const PatchBounds bounds{80, 180, 12.0, 28.0};
@@ -51,7 +51,7 @@ TEST(Motion, OfTheTransducerAcrossShiftsTheSpeckleTheOtherWay) {
   }
 }
 
-TEST(Motion, OfTheTransducerIntoDepthShiftsTheSpeckleUp) {
+TEST(Motion, AxialMotionShiftsSpeckleUp) {
   const Transducer transducer = linear();
   BMode engine(lossless_block(transducer), transducer, plain(transducer, no_artefacts()));
   const PatchBounds bounds{80, 180, 14.0, 24.0};
@@ -66,7 +66,7 @@ TEST(Motion, OfTheTransducerIntoDepthShiftsTheSpeckleUp) {
   EXPECT_GT(match.correlation, 0.9);
 }
 
-TEST(Motion, InElevationDecorrelatesAsTheBeamIsThick) {
+TEST(Motion, ElevationMotionDecorrelatesWithBeamThickness) {
   const Transducer transducer = convex();
   Acquisition acquisition = plain(transducer);
   BMode engine(lossless_block(transducer), transducer, acquisition);
@@ -85,7 +85,7 @@ TEST(Motion, InElevationDecorrelatesAsTheBeamIsThick) {
   }
 }
 
-TEST(Motion, OfAnotherScannersFrameIsWithoutMemory) {
+TEST(Motion, ReturningReproducesTheFirstFrame) {
   const Transducer transducer = convex();
   BMode engine(lossless_block(transducer), transducer, plain(transducer, Artefacts{}));
   const BasebandFrame first = engine.render({});
@@ -95,7 +95,7 @@ TEST(Motion, OfAnotherScannersFrameIsWithoutMemory) {
   EXPECT_EQ(first.im, again.im);
 }
 
-TEST(Frame, IsTheSameWhoeverComputesIt) {
+TEST(Frame, IsIndependentOfThreadScheduling) {
   const Transducer transducer = convex();
   const ScenePtr scene = lossless_block(transducer);
   BMode engine(scene, transducer, plain(transducer, Artefacts{}));
@@ -110,7 +110,7 @@ TEST(Frame, IsTheSameWhoeverComputesIt) {
   EXPECT_EQ(b.render({at_elevation(3.0), {}, 0.0}).im, alone.im);
 }
 
-TEST(Frame, IsMadeWithoutAllocation) {
+TEST(Frame, NeverAllocates) {
   const Transducer transducer = convex();
   const TestPlane plane{90.0, 0.2};
   const TestRod rods[] = {{0.0, 45.0, 8.0, TestTissue::kBone}, {25.0, 50.0, 8.0, TestTissue::kSlow}};

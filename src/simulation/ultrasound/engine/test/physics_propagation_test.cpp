@@ -17,7 +17,7 @@ double slope_db_per_cm(TestTissue tissue, double frequency_mhz, const Artefacts&
   return 10.0 * level_slope_db_per_mm(level_against_depth(patch, 5.0));
 }
 
-TEST(Attenuation, IsTheTablesAtTwoFrequencies) {
+TEST(Attenuation, MatchesTheTableAtTwoFrequencies) {
   const AcousticTable table = test_table();
   for (const TestTissue tissue : {TestTissue::kTissue, TestTissue::kLossy})
     for (const double frequency_mhz : {2.5, 4.5}) {
@@ -55,7 +55,7 @@ TEST(Cyst, HasTheContrastThatWasSet) {
   }
 }
 
-TEST(Cyst, OfFluidIsBlack) {
+TEST(Cyst, IsBlackIfFilledWithFluid) {
   const double measured_db = contrast_db(TestTissue::kWater);
   EXPECT_LT(measured_db, -35.0);
 }
@@ -71,7 +71,7 @@ double behind_against_without_db(const ScenePtr& with, const ScenePtr& without, 
   return with_db - level_db(patch_at(b.render({}), x_mm, half_mm, from_mm, to_mm));
 }
 
-TEST(Shadow, BehindBoneIsAsDeepAsLossAndBordersMakeIt) {
+TEST(Shadow, BehindBoneMatchesLossAndBorderReflections) {
   const Transducer transducer = convex();
   const SceneBox box = box_for(transducer, 120.0);
   constexpr double kThick_mm = 8.0, kLoss = 2.0;
@@ -100,7 +100,7 @@ TEST(Shadow, BehindShippedBoneIsBlack) {
   EXPECT_LT(measured_db, -40.0);
 }
 
-TEST(Enhancement, BehindFluidIsTheLossThatItDidNotMake) {
+TEST(Enhancement, BehindFluidEqualsTheAvoidedLoss) {
   const Transducer transducer = convex();
   const SceneBox box = box_for(transducer, 120.0);
   constexpr double kThick_mm = 16.0;
@@ -135,7 +135,7 @@ Balance balance_of(TestTissue behind) {
   return balance;
 }
 
-TEST(EnergyBalance, ReflectedAndTransmittedMakeUpWhatCame) {
+TEST(EnergyBalance, ReflectionPlusTransmissionIsTheIncidentEnergy) {
   const double all = balance_of(TestTissue::kGas).echo;  // reflects 0.999 of the amplitude
   for (const auto& [tissue, r] :
        {std::pair{TestTissue::kDense, 1.0 / 11.0}, std::pair{TestTissue::kDenser, 1.0 / 3.0}}) {
@@ -148,7 +148,7 @@ TEST(EnergyBalance, ReflectedAndTransmittedMakeUpWhatCame) {
   }
 }
 
-TEST(EnergyBalance, ABorderOfEqualImpedancesLetsAllPass) {
+TEST(EnergyBalance, EqualImpedancesTransmitEverything) {
   EXPECT_NEAR(balance_of(TestTissue::kSlow).passed, 1.0, 0.01);
 }
 

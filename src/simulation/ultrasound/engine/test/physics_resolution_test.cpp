@@ -89,7 +89,7 @@ std::vector<Seen> look_at(BMode& engine, const std::vector<double>& depths_mm) {
 
 class PointEcho : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(PointEcho, IsAsWideAsTheBeamAlongAcrossAndBeside) {
+TEST_P(PointEcho, MatchesTheBeamWidthInEveryDirection) {
   const Transducer transducer = shipped(GetParam());
   std::vector<double> depths_mm;
   for (const double share : {0.125, 0.25, 0.5, 0.75, 0.9}) depths_mm.push_back(share * transducer.depth_mm);
@@ -144,7 +144,7 @@ TEST(Resolution, FollowsFrequencyAndFocus) {
   EXPECT_NEAR(fit_gaussian(at_high.lateral).fwhm / fit_gaussian(at_focus.lateral).fwhm, 0.7, 0.05);
 }
 
-TEST(Resolution, TwoPointsMergeCloserThanThePulseAndPartFartherAway) {
+TEST(Resolution, SeparatesPointsFartherApartThanThePulse) {
   const Transducer transducer = convex();
   const SceneBox box = box_for(transducer, 100.0, 2.0);
   const double axial_mm = kFwhmPerSigma * make_beam(transducer, 3.5, 80.0).axial_sigma_mm;

@@ -85,7 +85,7 @@ TEST(Speckle, ScattersFollowsBackscatterAndStaysRayleigh) {
   EXPECT_NEAR(normalised_correlation(a.values, b.values), 1.0, 1e-4);
 }
 
-TEST(Speckle, OfLessDetailKeepsItsPattern) {
+TEST(Speckle, KeepsItsPatternAtLessDetail) {
   const Transducer transducer = convex();
   const ScenePtr scene = homogeneous_scene(box_of_frames(transducer), TestTissue::kLossless);
   const Acquisition full = plain(transducer);
@@ -106,7 +106,7 @@ TEST(Speckle, OfLessDetailKeepsItsPattern) {
   EXPECT_NEAR(level_db(c), level_db(a), 0.5);
 }
 
-TEST(Speckle, OfFewScatterersIsNotFullyDeveloped) {
+TEST(Speckle, IsNotFullyDevelopedForFewScatterers) {
   const Transducer transducer = convex();
   const ScenePtr scene = homogeneous_scene(box_of_frames(transducer), TestTissue::kLossless);
   BMode engine(
@@ -119,7 +119,7 @@ TEST(Speckle, OfFewScatterersIsNotFullyDeveloped) {
   EXPECT_NEAR(10.0 * std::log10(moments.mean_intensity), 0.0, 0.6) << "fewer, but stronger";
 }
 
-TEST(Speckle, WidthsAreTheBeams) {
+TEST(Speckle, WidthsMatchTheBeam) {
   for (const char* name : {"C5-2", "L14-5"}) {
     const Transducer transducer = shipped(name);
     BMode engine(homogeneous_scene(box_of_frames(transducer), TestTissue::kLossless), transducer, plain(transducer));

@@ -51,7 +51,7 @@ double difference(const BasebandFrame& a, const BasebandFrame& b, const LineRang
   return std::sqrt(apart / all);
 }
 
-TEST(Rolling, OtherScanlinesKeepTheirEchoes) {
+TEST(Rolling, KeepsEchoesOfOtherScanlines) {
   const Transducer transducer = convex();
   BMode engine(make_rolling_scene(transducer), transducer, coarse_rolling(transducer));
   const BasebandFrame before = engine.render(renewing(kBefore, {}));
@@ -63,7 +63,7 @@ TEST(Rolling, OtherScanlinesKeepTheirEchoes) {
   EXPECT_GT(difference(now, before, {40, 72}), 0.3);
 }
 
-TEST(Rolling, RenewedScanlinesAreThoseOfAWholeFrame) {
+TEST(Rolling, RenewedScanlinesMatchAFullFrame) {
   const Transducer transducer = convex();
   const ScenePtr scene = make_rolling_scene(transducer);
   BMode engine(scene, transducer, coarse_rolling(transducer)), whole(scene, transducer, coarse_rolling(transducer));
@@ -80,7 +80,7 @@ TEST(Rolling, RenewedScanlinesAreThoseOfAWholeFrame) {
   EXPECT_LT(difference(now, wanted, {0, kRollingLines}), 0.08);
 }
 
-TEST(Rolling, FirstFrameIsWhole) {
+TEST(Rolling, FirstFrameIsComplete) {
   const Transducer transducer = convex();
   BMode engine(make_rolling_scene(transducer), transducer, coarse_rolling(transducer));
   EXPECT_EQ(engine.render(renewing(kNow, {8, 16})).renewed, (LineRange{0, kRollingLines}));
@@ -112,7 +112,7 @@ TEST(Rolling, ScannerKeepsTheNoiseOfOtherScanlines) {
   EXPECT_FALSE(same(0, 40)) << "a new gain is that of the whole picture";
 }
 
-TEST(Rolling, PicturesRenewAllScanlinesInTurnAndAWholeOneAtRest) {
+TEST(Rolling, ImagesRenewAllScanlinesInTurn) {
   const Transducer transducer = convex();
   const ScenePtr scene = make_rolling_scene(transducer);
   PictureMaker maker(scene, transducer);

@@ -87,7 +87,7 @@ TEST(Walls, EvenPartIsABandWithoutSpeckle) {
   EXPECT_LT(std::sqrt(spread_db), 2.5) << "speckle has 5.6";
 }
 
-TEST(Walls, LieOutsideWhatTheyEnclose) {
+TEST(Walls, LieOutsideTheEnclosedTissue) {
   const Transducer transducer = linear();
   constexpr double kTilt_rad = 0.5;
   BMode walled(make_walled_scene(transducer, kTilt_rad, true), transducer, plain(transducer));
@@ -98,7 +98,7 @@ TEST(Walls, LieOutsideWhatTheyEnclose) {
   EXPECT_EQ(far_before.values, same.values);
 }
 
-TEST(Walls, BehindABorderAreAsThickAsInFrontOfIt) {
+TEST(Walls, AreEquallyThickOnBothSidesOfABorder) {
   const Transducer transducer = linear();
   const TestRod rod{0.0, 20.0, 6.0, TestTissue::kWater};
   const ScenePtr scene =

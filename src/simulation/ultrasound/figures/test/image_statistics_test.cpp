@@ -26,7 +26,7 @@ TEST(TargetVisibility, FindsTheContrastThatWasSet) {
   }
 }
 
-TEST(TargetVisibility, OfRayleighLevelsHasItsClosedForm) {
+TEST(TargetVisibility, MatchesTheClosedFormForRayleighLevels) {
   // Intensities are exponential with means 1 and r; their densities cross at r ln r / (r - 1).
   const double ratio = 4.0;
   const double cross = ratio * std::log(ratio) / (ratio - 1.0);
@@ -37,7 +37,7 @@ TEST(TargetVisibility, OfRayleighLevelsHasItsClosedForm) {
   EXPECT_NEAR(visibility.cnr, mean * (2.0 - 1.0) / std::sqrt((1.0 - mean * mean) * (4.0 + 1.0)), 0.01);
 }
 
-TEST(TargetVisibility, OfEqualAndOfDisjointRegionsIsZeroAndOne) {
+TEST(TargetVisibility, IsZeroForEqualAndOneForDisjointRegions) {
   EXPECT_LT(target_visibility(rayleigh(200000, 1.0, 5), rayleigh(200000, 1.0, 6)).gcnr, 0.02);
   EXPECT_DOUBLE_EQ(target_visibility(std::vector<float>{1, 2}, std::vector<float>{8, 9}).gcnr, 1.0);
 }
@@ -51,7 +51,7 @@ TEST(GrayHistogram, SharesSumToOneAndGivePercentiles) {
   EXPECT_NEAR(mean_gray(histogram), 49.5, 1e-9);
 }
 
-TEST(EarthMoverDistance, OfAShiftIsTheShift) {
+TEST(EarthMoverDistance, EqualsTheShiftOfAShiftedHistogram) {
   std::vector<std::uint8_t> a, b;
   Random random(7);
   for (int i = 0; i < 1000; ++i) {

@@ -36,7 +36,7 @@ Drawn draw(const GrayAt& gray_at) {
   return drawn;
 }
 
-TEST(PolarPicture, FindsWhatWasDrawnAtADepthAndScanline) {
+TEST(PolarPicture, RecoversValuesByDepthAndScanline) {
   const Drawn drawn = draw([](const Polar& place) { return 20.0 + place.depth_mm + 0.3 * place.line; });
   const EchoPatch polar = polar_picture(drawn.view(), 100, 0.5);
   for (int line = 0; line < 100; line += 9)

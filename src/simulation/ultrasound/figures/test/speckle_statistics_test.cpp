@@ -58,7 +58,7 @@ std::vector<float> k_distributed(std::size_t count, int alpha, std::uint64_t see
   return values;
 }
 
-TEST(SpeckleMoments, OfACircularGaussianFieldAreRayleighs) {
+TEST(SpeckleMoments, MatchRayleighForACircularGaussianField) {
   const SpeckleMoments moments = speckle_moments(gaussian_field(200, 500, 0.0, 0.0, 1).values);
   // Standard errors with 100,000 independent values: snr 0.005, m 0.006; four of them.
   EXPECT_NEAR(moments.snr, kRayleighSnr, 0.02);
@@ -68,7 +68,7 @@ TEST(SpeckleMoments, OfACircularGaussianFieldAreRayleighs) {
   EXPECT_NEAR(moments.mean, std::sqrt(std::numbers::pi / 2.0), 0.01);
 }
 
-TEST(SpeckleMoments, OfAKDistributionFollowItsShape) {
+TEST(SpeckleMoments, FollowTheShapeOfAKDistribution) {
   for (const int alpha : {1, 4, 16}) {
     const SpeckleMoments moments = speckle_moments(k_distributed(400000, alpha, 2));
     // Normalised variance of a K-distributed intensity is 1 + 2/alpha (Jakeman & Pusey 1976); Nakagami's is 1/m.
@@ -78,7 +78,7 @@ TEST(SpeckleMoments, OfAKDistributionFollowItsShape) {
   }
 }
 
-TEST(SpeckleMoments, OfNakagamiValuesFindTheirM) {
+TEST(SpeckleMoments, RecoverTheNakagamiParameter) {
   Random random(3);
   std::vector<float> values(200000);
   for (float& value : values) {  // m = 3: the sum of three exponentials.
@@ -90,12 +90,12 @@ TEST(SpeckleMoments, OfNakagamiValuesFindTheirM) {
   EXPECT_NEAR(speckle_moments(values).nakagami_m_ml, 3.0, 0.04);
 }
 
-TEST(SpeckleMoments, OfNothingAndOfAConstantAreFinite) {
+TEST(SpeckleMoments, AreFiniteForEmptyAndConstantInput) {
   EXPECT_EQ(speckle_moments({}).snr, 0.0);
   EXPECT_EQ(speckle_moments(std::vector<float>(10, 2.0F)).snr, 0.0);
 }
 
-TEST(RayleighFit, RefusesRayleighAsSeldomAsTheTableSays) {
+TEST(RayleighFit, RejectsRayleighAtTheTabulatedRate) {
   int refused = 0;
   constexpr int kTrials = 400;
   for (int trial = 0; trial < kTrials; ++trial) {
@@ -127,7 +127,7 @@ TEST(SpeckleCorrelation, FindsTheWidthsOfTheSmoothingKernel) {
   EXPECT_NEAR(correlation.cells, cells, 0.15 * cells);
 }
 
-TEST(SpeckleCorrelation, OfTheEnvelopeIsNearlyThatOfTheIntensity) {
+TEST(SpeckleCorrelation, OfTheEnvelopeMatchesThatOfTheIntensity) {
   const EchoPatch envelope = gaussian_field(160, 300, 3.0, 2.0, 9);
   const SpeckleCorrelation of_envelope = speckle_correlation(envelope);
   const SpeckleCorrelation of_intensity = speckle_correlation(intensity_of(envelope));
@@ -135,7 +135,7 @@ TEST(SpeckleCorrelation, OfTheEnvelopeIsNearlyThatOfTheIntensity) {
   EXPECT_NEAR(of_envelope.lateral_fwhm_mm / of_intensity.lateral_fwhm_mm, 1.0, 0.05);
 }
 
-TEST(SpeckleCorrelation, LetsThinnedValuesPassAsIndependent) {
+TEST(SpeckleCorrelation, YieldsIndependentThinnedValues) {
   const EchoPatch envelope = gaussian_field(240, 600, 3.0, 2.0, 10);
   const SpeckleCorrelation correlation = speckle_correlation(intensity_of(envelope));
   const std::vector<float> values = thinned(envelope, correlation);
@@ -143,7 +143,7 @@ TEST(SpeckleCorrelation, LetsThinnedValuesPassAsIndependent) {
   EXPECT_LT(fit_rayleigh(values).statistic, kRayleighStatistic99);
 }
 
-TEST(WithoutTrend, TakesASlopeAwayAndLeavesTheSpeckle) {
+TEST(WithoutTrend, RemovesASlopeAndKeepsTheSpeckle) {
   EchoPatch patch = gaussian_field(120, 200, 2.0, 2.0, 11);
   const SpeckleCorrelation before = speckle_correlation(patch);
   const double mean = speckle_moments(patch.values).mean;
@@ -170,7 +170,7 @@ TEST(LevelAgainstDepth, FindsTheSlopeOfAnExponentialLoss) {
   EXPECT_NEAR(level_slope_db_per_mm(levels), -kLoss_db_per_mm, 0.005);
 }
 
-TEST(NormalisedCorrelation, IsOneForScaledAndZeroForOtherFields) {
+TEST(NormalisedCorrelation, IsOneForScaledAndZeroForUnrelatedFields) {
   const EchoPatch a = gaussian_field(60, 60, 0.0, 0.0, 13);
   std::vector<float> scaled = a.values;
   for (float& value : scaled) value = 3.0F * value + 1.0F;

@@ -69,7 +69,7 @@ std::shared_ptr<const ScanPicture> ask_until(LiveScanner& scanner, ScanRequest r
   return nullptr;
 }
 
-TEST(PictureMaker, GivesTheCornersOfThePictureInThePatient) {
+TEST(PictureMaker, ReportsTheImageCornersInThePatient) {
   PictureMaker maker(scene(), small_probe());
   ScanRequest request = small_request();
   Mat3 R_PT;
@@ -89,7 +89,7 @@ TEST(PictureMaker, GivesTheCornersOfThePictureInThePatient) {
   }
 }
 
-TEST(PictureMaker, ShowsTheSameThingsAtEveryDetail) {
+TEST(PictureMaker, ShowsTheSameContentAtEveryDetail) {
   PictureMaker maker(scene(), small_probe());
   for (const ScanDetail detail : {ScanDetail::kFast, ScanDetail::kMiddle, ScanDetail::kFull}) {
     const ScanPicture picture = maker.make(small_request(), detail, 1);
@@ -99,7 +99,7 @@ TEST(PictureMaker, ShowsTheSameThingsAtEveryDetail) {
   EXPECT_EQ(maker.cine()->size(), 3);
 }
 
-TEST(PictureMaker, ShowsKeptPicturesAsTheyWereAndWithNewGain) {
+TEST(PictureMaker, RedisplaysKeptImagesWithNewGain) {
   PictureMaker maker(scene(), small_probe());
   ScanRequest request = small_request();
   const ScanPicture live = maker.make(request, ScanDetail::kFull, 1);
@@ -126,7 +126,7 @@ TEST(PictureMaker, BeginsANewLoopAtAnotherDepth) {
   EXPECT_EQ(maker.show_kept(request).scan.depth_mm, 40.0);
 }
 
-TEST(ResampleLevels, KeepsRampsAndIsExactForTheSameScan) {
+TEST(ResampleLevels, PreservesRampsAndIsExactForTheSameScan) {
   const Transducer probe = small_probe();
   const ScanGeometry coarse = make_scan_geometry(probe, kLiveDepth_mm, 32, 128);
   const ScanGeometry fine = make_scan_geometry(probe, kLiveDepth_mm, 64, 256);
@@ -176,7 +176,7 @@ TEST(LiveScanner, ShowsTheNewestOfManyRequests) {
   EXPECT_EQ(full->scan.lines, request.acquisition.lines);
 }
 
-TEST(LiveScanner, KeepsTheFrozenPictureWhileTheProbeMoves) {
+TEST(LiveScanner, KeepsTheFrozenImageWhileTheProbeMoves) {
   LiveScanner scanner;
   scanner.open(scene(), small_probe());
   ScanRequest request = small_request();
@@ -230,7 +230,7 @@ TEST(LiveScanner, StepsAndPlaysTheCineLoop) {
   EXPECT_FALSE(scanner.cine().is_playing);
 }
 
-TEST(LiveScanner, ForgetsThePatientWhoHasLeft) {
+TEST(LiveScanner, ForgetsAClosedPatient) {
   LiveScanner scanner;
   scanner.open(scene(), small_probe());
   const ScanRequest request = small_request();
@@ -245,7 +245,7 @@ TEST(LiveScanner, ForgetsThePatientWhoHasLeft) {
   EXPECT_NEAR(picture->scan.line_origin(0).x(), -0.5 * 59 * 0.5, 1e-9);
 }
 
-TEST(LiveScanner, LeavesOutWhatIsNoPlace) {
+TEST(LiveScanner, IgnoresInvalidPoses) {
   LiveScanner scanner;
   scanner.open(scene(), small_probe());
   ScanRequest bad = small_request();

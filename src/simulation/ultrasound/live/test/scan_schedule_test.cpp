@@ -41,7 +41,7 @@ struct Machine {
   }
 };
 
-TEST(ScanDetail, NeverAsksForMoreThanFull) {
+TEST(ScanDetail, NeverExceedsFullDetail) {
   Acquisition tiny;
   tiny.lines = 12;
   tiny.samples = 48;
@@ -62,7 +62,7 @@ TEST(ScanDetail, NeverAsksForMoreThanFull) {
   EXPECT_EQ(fast.depth_mm, usual.depth_mm);
 }
 
-TEST(ScanSchedule, KeepsTwentyFramesASecondWhileTheProbeMoves) {
+TEST(ScanSchedule, Keeps20FramesPerSecondWhileTheProbeMoves) {
   // From a machine that renders all at once to one on which only the coarsest detail keeps the pace.
   for (const double ms_a_million : {1.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 36.0}) {
     Machine machine;
@@ -75,7 +75,7 @@ TEST(ScanSchedule, KeepsTwentyFramesASecondWhileTheProbeMoves) {
   }
 }
 
-TEST(ScanSchedule, UsesTheFinestDetailThatKeepsThePace) {
+TEST(ScanSchedule, UsesTheFinestDetailThatMeetsTheRate) {
   Machine quick;
   quick.ms_a_million = 10.0;  // full: 28 ms
   quick.run(2.0, 40.0);
@@ -92,7 +92,7 @@ TEST(ScanSchedule, UsesTheFinestDetailThatKeepsThePace) {
   EXPECT_EQ(usual.last, ScanDetail::kMiddle);
 }
 
-TEST(ScanSchedule, ShowsFullDetailOnceStill) {
+TEST(ScanSchedule, ShowsFullDetailWhenStill) {
   Machine machine;
   machine.ms_a_million = 35.0;
   machine.run(1.0, 40.0);
@@ -122,7 +122,7 @@ TEST(ScanSchedule, RefreshesSlowlyWhileNothingChanges) {
   EXPECT_GE(machine.frames, 10);
 }
 
-TEST(ScanSchedule, TakesTremorForStillAndADriftForMotion) {
+TEST(ScanSchedule, TreatsTremorAsStillAndDriftAsMotion) {
   Machine machine;
   machine.ms_a_million = 35.0;
   machine.run(1.0, 40.0);
@@ -159,7 +159,7 @@ TEST(ScanSchedule, RendersAtOnceWhenNeedleOrSettingsChange) {
   EXPECT_TRUE(schedule.due(moved, 10.07));
 }
 
-TEST(ScanRequest, IsHeldToItsRanges) {
+TEST(ScanRequest, IsClampedToItsRanges) {
   Transducer transducer;
   ScanRequest request;
   request.acquisition.depth_mm = std::numeric_limits<double>::quiet_NaN();

@@ -32,7 +32,7 @@ ScenePtr rib_scene(const Transducer& transducer, TestTissue tissue) {
   return slab_scene(box_for(transducer, 60.0, 0.5), TestTissue::kTissue, {5.0, 20.0, 26.0, tissue});
 }
 
-TEST(PanoramaShadow, BeginsBehindTheBoneAndNotInFrontOfIt) {
+TEST(PanoramaShadow, StartsBehindTheBone) {
   const Transducer transducer = linear();
   Acquisition acquisition = small_scan(transducer);
   acquisition.artefacts.attenuation = true;
@@ -51,7 +51,7 @@ TEST(PanoramaShadow, BeginsBehindTheBoneAndNotInFrontOfIt) {
     EXPECT_NEAR(level_at(frame, 3, sample_at(mm)), linear_level_db(kGray), 0.5) << mm;
 }
 
-TEST(PanoramaShadow, SoftTissueCastsNone) {
+TEST(PanoramaShadow, IsNotCastBySoftTissue) {
   const Transducer transducer = linear();
   Acquisition acquisition = small_scan(transducer);
   acquisition.artefacts.attenuation = true;
@@ -64,7 +64,7 @@ TEST(PanoramaShadow, SoftTissueCastsNone) {
   }
 }
 
-TEST(PanoramaShadow, GasCastsOneAndAttenuationOffCastsNone) {
+TEST(PanoramaShadow, IsCastByGasOnlyWithAttenuation) {
   const Transducer transducer = linear();
   Acquisition acquisition = small_scan(transducer);
   acquisition.artefacts.attenuation = true;
@@ -75,7 +75,7 @@ TEST(PanoramaShadow, GasCastsOneAndAttenuationOffCastsNone) {
   EXPECT_NEAR(level_at(engine.render({Pose(), {}, 0.0}), 32, 200), linear_level_db(kGray), 0.3);
 }
 
-TEST(PanoramaFade, WithoutCoverageTheFrameIsThatOfTheRayCastBitByBit) {
+TEST(PanoramaFade, EqualsTheRayCastFrameWithoutCoverage) {
   const Transducer transducer = linear();
   const Acquisition acquisition = with_artefacts(transducer);
   const ScenePtr scene = rib_scene(transducer, TestTissue::kBone);
@@ -116,7 +116,7 @@ TEST(PanoramaFade, WeightsOfBothEnginesAddUpToOne) {
   EXPECT_LT(engine.ray_cast_lines(), 48);
 }
 
-TEST(PanoramaFade, LiverHasTheSameMeanLevelOnBothSidesOfTheBorder) {
+TEST(PanoramaFade, KeepsTheLiverLevelAcrossTheBorder) {
   const Transducer transducer = convex();
   Acquisition acquisition = small_scan(transducer);
   acquisition.lines = 128;
@@ -138,7 +138,7 @@ TEST(PanoramaFade, LiverHasTheSameMeanLevelOnBothSidesOfTheBorder) {
   EXPECT_NEAR(mean_db(88, 118), 0.0, 1.0);
 }
 
-TEST(PanoramaFade, FaceInAirShowsTheRayCastPicture) {
+TEST(PanoramaFade, ShowsTheRayCastImageForAFaceInAir) {
   const Transducer transducer = linear();
   const Acquisition acquisition = with_artefacts(transducer);
   const ScenePtr scene = gap_scene(box_for(transducer, 60.0), TestTissue::kTissue, -100.0, 5.0);
@@ -226,7 +226,7 @@ TEST(PanoramaFrame, AllocatesNothingAfterTheFirst) {
   }
 }
 
-TEST(PanoramaFrame, ImpossiblePosesGiveAFrameWithoutThePanorama) {
+TEST(PanoramaFrame, OmitsThePanoramaForInvalidPoses) {
   const Transducer transducer = linear();
   PanoramaEngine engine(rib_scene(transducer, TestTissue::kBone), even(), transducer, with_artefacts(transducer));
   const std::vector<float> usual = engine.render({Pose(), {}, 0.0}).re;

@@ -20,7 +20,7 @@ ScanRequest request_of(const Transducer& transducer) {
   return request;
 }
 
-TEST(PanoramaLive, RequestsChooseTheEngineOfEachPicture) {
+TEST(PanoramaLive, RequestsSelectTheEngineOfEachImage) {
   const Transducer transducer = linear();
   const ScenePtr scene = homogeneous_scene(box_for(transducer, 60.0), TestTissue::kTissue);
   const auto panorama = make(paint_gray(kFirst_mm, kLast_mm, 1.0, [](const Vec3&) { return 150; }));
@@ -37,7 +37,7 @@ TEST(PanoramaLive, RequestsChooseTheEngineOfEachPicture) {
   EXPECT_EQ(again.gray.pixels, cast.gray.pixels);
 }
 
-TEST(PanoramaLive, AnotherEngineIsAnotherPicture) {
+TEST(PanoramaLive, AnotherEngineIsANewRequest) {
   const ScanRequest cast = request_of(linear());
   ScanRequest sliced = cast;
   sliced.panorama = make(paint_gray(Vec3(0, 0, 0), Vec3(9, 9, 9), 1.0, [](const Vec3&) { return 150; }));

@@ -20,7 +20,7 @@ Pose turned(const Vec3& axis, double angle_rad, const Vec3& p) {
   return {Eigen::AngleAxisd(angle_rad, axis.normalized()).toRotationMatrix(), p};
 }
 
-TEST(PanoramaSlice, RampOfGrayHasItsLevelAtEverySampleOfATurnedPanorama) {
+TEST(PanoramaSlice, ReproducesARampInARotatedPanorama) {
   const Transducer transducer = linear();
   const Vec3 slope(0.7, 1.1, 0.9);  // gray per mm
   const auto gray_of = [&](const Vec3& p_U) { return 120.0 + slope.dot(p_U); };
@@ -41,7 +41,7 @@ TEST(PanoramaSlice, RampOfGrayHasItsLevelAtEverySampleOfATurnedPanorama) {
     }
 }
 
-TEST(PanoramaSlice, BallLiesWhereThePoseOfThePanoramaPutsIt) {
+TEST(PanoramaSlice, PlacesABallByThePanoramaPose) {
   const Transducer transducer = linear();
   const Vec3 centre_P(4.0, 27.0, 0.0);
   const Pose X_PU = turned({0.3, 1.0, 0.2}, 0.4, {7.0, -3.0, 2.0});
@@ -67,7 +67,7 @@ TEST(PanoramaSlice, BallLiesWhereThePoseOfThePanoramaPutsIt) {
   EXPECT_NEAR(std::sqrt(area_mm2 / std::numbers::pi), kRadius_mm, 0.5 * kSpacing_mm);
 }
 
-TEST(PanoramaSlice, ThinPlateBesideThePlaneHasTheWeightOfItsDistance) {
+TEST(PanoramaSlice, WeightsAPlateByItsDistanceFromThePlane) {
   const Transducer transducer = linear();
   Acquisition acquisition = small_scan(transducer);
   acquisition.planes = 9;
@@ -93,7 +93,7 @@ TEST(PanoramaSlice, ThinPlateBesideThePlaneHasTheWeightOfItsDistance) {
   }
 }
 
-TEST(PanoramaSlice, PlanesHaveTheVarianceOfTheBeamsPower) {
+TEST(PanoramaSlice, PlaneWeightsMatchTheBeamVariance) {
   for (const int count : {3, 5, 7, 9}) {
     const detail::BeamPlanes planes = detail::make_beam_planes(count);
     float sum = 0.0F, squares = 0.0F;
@@ -106,7 +106,7 @@ TEST(PanoramaSlice, PlanesHaveTheVarianceOfTheBeamsPower) {
   }
 }
 
-TEST(PanoramaSlice, ScannerShowsThePanoramasGrayAtItsDefaultSettings) {
+TEST(PanoramaSlice, DefaultSettingsReproduceThePanoramaGray) {
   const Transducer transducer = linear();
   for (const int gray : {20, 70, 140, 230}) {
     const auto panorama =
@@ -119,7 +119,7 @@ TEST(PanoramaSlice, ScannerShowsThePanoramasGrayAtItsDefaultSettings) {
   }
 }
 
-TEST(PanoramaSlice, SixDecibelsOfGainRaiseTheLevelBySix) {
+TEST(PanoramaSlice, RaisesTheLevelByTheGain) {
   const Transducer transducer = linear();
   const auto panorama = make(paint_gray(kFirst_mm, kLast_mm, 1.0, [](const Vec3&) { return 100; }));
   PanoramaEngine engine(lossless(transducer), panorama, transducer, small_scan(transducer));
@@ -146,7 +146,7 @@ TEST(Panorama, RefusesEmptyVolumesAndImpossibleNumbers) {
   EXPECT_TRUE(make_panorama(gray, Pose()));
 }
 
-TEST(Panorama, WeightIsZeroAtUnknownVoxelsAndWholeFarFromThem) {
+TEST(Panorama, WeightFallsToZeroTowardsUnknownVoxels) {
   const auto panorama =
       make(paint_gray(Vec3(0, 0, 0), Vec3(50, 40, 40), 1.0, [](const Vec3& p) { return p.x() < 25.0 ? 80 : 0; }));
   ASSERT_TRUE(panorama);

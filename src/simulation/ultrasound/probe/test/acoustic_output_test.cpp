@@ -11,33 +11,33 @@ namespace {
 
 const std::filesystem::path kOutputsFile = data_dir() / "transducers.toml";
 
-TEST(AcousticOutput, TheMechanicalIndexIsPressureOverTheRootOfTheFrequency) {
+TEST(AcousticOutput, MechanicalIndexIsPressureOverRootFrequency) {
   // At the face there is no tissue to derate for.
   EXPECT_DOUBLE_EQ(acoustic_indices({1.0, 1.0}, 1.0, 0.0).mechanical, 1.0);
   EXPECT_DOUBLE_EQ(acoustic_indices({2.0, 1.0}, 4.0, 0.0).mechanical, 1.0);
   EXPECT_DOUBLE_EQ(acoustic_indices({1.5, 1.0}, 9.0, 0.0).mechanical, 0.5);
 }
 
-TEST(AcousticOutput, TissueDeratesByThreeTenthsOfADecibelPerCentimetreAndMegahertz) {
+TEST(AcousticOutput, DeratesTissueBy03DbPerCmAndMhz) {
   // 4 MHz through 5 cm: 6 dB, a factor of 10^(-0.3) = 0.501187.
   EXPECT_NEAR(acoustic_indices({2.0, 1.0}, 4.0, 50.0).mechanical, 0.501187, 1e-6);
   // Twice the way is twice the decibels.
   EXPECT_NEAR(acoustic_indices({2.0, 1.0}, 4.0, 100.0).mechanical, 0.501187 * 0.501187, 1e-6);
 }
 
-TEST(AcousticOutput, TheThermalIndexIsOneAt210MilliwattsAndOneMegahertz) {
+TEST(AcousticOutput, ThermalIndexIsOneAt210MwAndOneMhz) {
   EXPECT_DOUBLE_EQ(acoustic_indices({0.1, 210.0}, 1.0, 40.0).thermal, 1.0);
   EXPECT_DOUBLE_EQ(acoustic_indices({0.1, 42.0}, 5.0, 40.0).thermal, 1.0);
 }
 
-TEST(AcousticOutput, TheScannerKeepsTheLimitAndLowersThePowerWithThePressureSquared) {
+TEST(AcousticOutput, LimitLowersPowerWithPressureSquared) {
   // 3.8 at 1 MHz is twice the limit: half the pressure, a quarter of the power.
   const AcousticIndices indices = acoustic_indices({3.8, 84.0}, 1.0, 0.0);
   EXPECT_DOUBLE_EQ(indices.mechanical, 1.9);
   EXPECT_NEAR(indices.thermal, 0.1, 1e-12);
 }
 
-TEST(AcousticOutput, ShippedTransducersStayWithinTheLimitsAtEverySetting) {
+TEST(AcousticOutput, ShippedTransducersStayWithinTheLimits) {
   const auto transducers = load_transducers(kOutputsFile);
   ASSERT_TRUE(transducers) << transducers.error().text();
   for (const Transducer& t : *transducers) {

@@ -58,7 +58,7 @@ TEST(ProbeContact, FlatFaceDentsFlatSkinByItsDepth) {
   }
 }
 
-TEST(ProbeContact, GapIsMeasuredAndLosesTheSound) {
+TEST(ProbeContact, GapIsMeasuredAndLosesCoupling) {
   const volume::FloatGrid skin = flat_skin();
   std::vector<LineContact> contact(65);
   for (const double gap_mm : {0.4, 1.5, 3.0, 40.0}) {
@@ -103,7 +103,7 @@ TEST(ProbeContact, TiltedFaceLosesOneSideSmoothly) {
   }
 }
 
-TEST(ProbeContact, WithoutSkinOrPoseNothingIsPressed) {
+TEST(ProbeContact, PressesNothingWithoutSkinOrPose) {
   std::vector<LineContact> contact(65, LineContact{1, 1, 0});
   find_contact(volume::FloatGrid{}, linear_scan(), Pose{}, contact);
   EXPECT_EQ(contact[7].pressed_mm, 0.0F);
@@ -138,7 +138,7 @@ TEST(ProbeContact, DentIsMonotoneAndItsInverseExact) {
   }
 }
 
-TEST(ProbeContact, DentTakesTheSkinToTheFaceAndLeavesTheDepth) {
+TEST(ProbeContact, DentMovesTheSkinToTheFaceAndKeepsDeepTissue) {
   EXPECT_DOUBLE_EQ(rest_depth_mm(0.0, 7.0), -7.0);
   EXPECT_NEAR(pressed_depth_mm(-7.0, 7.0), 0.0, 1e-12);
   EXPECT_DOUBLE_EQ(rest_depth_mm(kDentReach_mm, 7.0), kDentReach_mm);

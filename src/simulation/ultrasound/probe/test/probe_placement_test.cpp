@@ -100,7 +100,7 @@ void expect_target_in_picture(const anatomy::VirtualPatient& patient, const Plac
   EXPECT_GT(share_of(patient, placed, target->name), 0.001) << placed.view.name;
 }
 
-TEST(ProbePlacement, EveryViewOfTheAbdomenTouchesTheSkinAndShowsItsTarget) {
+TEST(ProbePlacement, EveryAbdomenViewShowsItsTarget) {
   const std::vector<std::string> names = possible_views(abdomen(), views());
   EXPECT_GE(names.size(), 9U);
   for (const std::string& name : names) {
@@ -129,7 +129,7 @@ TEST(ProbePlacement, LayeredScenesHaveTheirViews) {
   }
 }
 
-TEST(ProbePlacement, KidneyLiesBehindLiverAndNoBoneInFront) {
+TEST(ProbePlacement, KidneyViewCrossesLiverButNoBone) {
   const Placed placed = place_named_view(abdomen(), "liver-right-kidney");
   EXPECT_GT(share_of(abdomen(), placed, "kidney_right"), 0.08);
   EXPECT_GT(share_of(abdomen(), placed, "liver"), 0.1);
@@ -139,7 +139,7 @@ TEST(ProbePlacement, KidneyLiesBehindLiverAndNoBoneInFront) {
     EXPECT_GT(bone_depth_mm(abdomen(), placed, line), 70.0) << line;
 }
 
-TEST(ProbePlacement, IntercostalViewHasARibAtEitherSideOfAFreeMiddle) {
+TEST(ProbePlacement, IntercostalViewLiesBetweenTwoRibs) {
   const auto liver = anatomy::phantom::make_layered_scene("layers-liver", 1, {{100, 175, 100}});
   for (const anatomy::VirtualPatient* patient : {&abdomen(), &*liver}) {
     const Placed placed = place_named_view(*patient, "intercostal");
@@ -154,7 +154,7 @@ TEST(ProbePlacement, IntercostalViewHasARibAtEitherSideOfAFreeMiddle) {
   }
 }
 
-TEST(ProbePlacement, SpineIsSeenFromTheBackWithItsProcesses) {
+TEST(ProbePlacement, SpineViewShowsTheProcessesFromTheBack) {
   const Placed placed = place_named_view(abdomen(), "spine-longitudinal");
   EXPECT_LT(placed.X_PT.R()(1, 1), -0.9);
   EXPECT_GT(placed.X_PT.p().y(), 60.0);
@@ -169,7 +169,7 @@ TEST(ProbePlacement, SpineIsSeenFromTheBackWithItsProcesses) {
   EXPECT_GE(changes, 3);
 }
 
-TEST(ProbePlacement, DiaphragmIsMetThroughTheLiver) {
+TEST(ProbePlacement, DiaphragmViewCrossesTheLiver) {
   const Placed placed = place_named_view(abdomen(), "diaphragm");
   bool was_liver = false;
   bool has_border = false;
@@ -194,7 +194,7 @@ TEST(ProbePlacement, AngleTurnsThePlaneAboutTheBeam) {
   EXPECT_GT(straight->X_PT.R().col(0).z(), 0.9);
 }
 
-TEST(ProbePlacement, SaysWhatThePatientLacksAndWhatHeHas) {
+TEST(ProbePlacement, NamesMissingTargetsAndPossibleViews) {
   const auto lacking = choose_view(abdomen(), views(), "ascites");
   ASSERT_FALSE(lacking.has_value());
   EXPECT_EQ(lacking.error().exit_status, 2);
@@ -211,7 +211,7 @@ TEST(ProbePlacement, SaysWhatThePatientLacksAndWhatHeHas) {
   EXPECT_FALSE(place_probe(anatomy::VirtualPatient{}, view, *transducer).has_value());
 }
 
-TEST(ProbeView, FirstPatternThatMatchesCountsAndTheLargestOfItsLabels) {
+TEST(ProbeView, SelectsTheLargestLabelOfTheFirstMatchingPattern) {
   anatomy::VirtualPatient patient;
   patient.labels.geometry.size = {10, 10, 1};
   patient.labels.voxels.assign(100, 0);

@@ -20,7 +20,7 @@ Result<std::vector<ProbeView>> load(const std::string& text) {
 
 const std::string kRow = "[views.x]\ntitle = \"X\"\ntargets = [\"liver\"]\ntransducer = \"C5-2\"\n";
 
-TEST(ProbeViews, AllRowsLoadAndNameTransducersThatAreThere) {
+TEST(ProbeViews, ShippedRowsLoadAndNameKnownTransducers) {
   const auto views = load_probe_views(data_dir() / "views.toml");
   ASSERT_TRUE(views.has_value()) << views.error().text();
   EXPECT_GE(views->size(), 10U);
@@ -50,7 +50,7 @@ TEST(ProbeViews, KeysReachTheirFields) {
   EXPECT_EQ(view.depth_mm, 99.0);
 }
 
-TEST(ProbeViews, RefusesWhatMakesNoView) {
+TEST(ProbeViews, RefuseInvalidRows) {
   EXPECT_TRUE(load(kRow).has_value());
   for (const char* line : {"direction = [0, 0, 0]", "direction = [0, 1]", "plane = \"axial\"", "bone = \"maybe\"",
                            "point = \"facing\"", "pressed_mm = 40", "depth_mm = 5", "presed_mm = 4"})

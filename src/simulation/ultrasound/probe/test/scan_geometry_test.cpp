@@ -46,7 +46,7 @@ TEST(ScanGeometry, PolarAndCartesianAreInverse) {
   }
 }
 
-TEST(ScanGeometry, MiddleOfTheFaceIsTheOriginAndDepthRunsAlongY) {
+TEST(ScanGeometry, OriginIsTheFaceCentreAndDepthRunsAlongY) {
   for (const ScanGeometry& scan : scans()) {
     EXPECT_LT(scan.to_cartesian({scan.middle_line(), 0.0}).norm(), kRounding_mm);
     EXPECT_LT((scan.to_cartesian({scan.middle_line(), 50.0}) - Vec2(0.0, 50.0)).norm(), kRounding_mm);
@@ -55,7 +55,7 @@ TEST(ScanGeometry, MiddleOfTheFaceIsTheOriginAndDepthRunsAlongY) {
   }
 }
 
-TEST(ScanGeometry, NeighbouringScanlinesAreAsFarApartAsTold) {
+TEST(ScanGeometry, LineSpacingMatchesNeighbouringScanlines) {
   for (const ScanGeometry& scan : scans()) {
     for (const double depth_mm : {1.0, 40.0, 100.0}) {
       const Vec2 apart = scan.to_cartesian({11.0, depth_mm}) - scan.to_cartesian({10.0, depth_mm});
@@ -65,7 +65,7 @@ TEST(ScanGeometry, NeighbouringScanlinesAreAsFarApartAsTold) {
   }
 }
 
-TEST(ScanGeometry, ExtentIsTheSmallestBoxThatHoldsTheScan) {
+TEST(ScanGeometry, ExtentIsTheTightestBox) {
   for (const ScanGeometry& scan : scans()) {
     ScanGeometry::Extent box{1e9, 1e9, -1e9, -1e9};
     for (int line = 0; line <= 2 * (scan.lines - 1); ++line) {
@@ -85,7 +85,7 @@ TEST(ScanGeometry, ExtentIsTheSmallestBoxThatHoldsTheScan) {
   }
 }
 
-TEST(ScanGeometry, OutermostScanlinesAreTheTransducersOwn) {
+TEST(ScanGeometry, OutermostScanlinesMatchTheTransducer) {
   for (const Transducer& t : shipped_transducers()) {
     const ScanGeometry scan = make_scan_geometry(t, 100.0, 200, 500);
     EXPECT_EQ(scan.sample_mm(), 0.2);
@@ -99,7 +99,7 @@ TEST(ScanGeometry, OutermostScanlinesAreTheTransducersOwn) {
   }
 }
 
-TEST(RasterGeometry, HoldsTheWholeScanCentredAndAsLargeAsFits) {
+TEST(RasterGeometry, FitsTheScanCentredAndAsLargeAsPossible) {
   for (const ScanGeometry& scan : scans()) {
     for (const auto& [columns, rows] : {std::pair{640, 480}, std::pair{200, 900}, std::pair{1200, 300}}) {
       const RasterGeometry raster = fit_raster(scan, columns, rows);

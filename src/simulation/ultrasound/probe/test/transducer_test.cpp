@@ -20,7 +20,7 @@ bool has_arc(TransducerKind kind) {
   return kind == TransducerKind::kConvex || kind == TransducerKind::kMechanicalConvex;
 }
 
-TEST(Transducers, ShippedOnesAreOfEveryKindAndFitTogether) {
+TEST(Transducers, ShippedOnesCoverEveryKindConsistently) {
   const auto transducers = load_transducers(kTransducersFile);
   ASSERT_TRUE(transducers) << transducers.error().text();
   std::set<TransducerKind> kinds;
@@ -44,7 +44,7 @@ TEST(Transducers, ShippedOnesAreOfEveryKindAndFitTogether) {
   EXPECT_EQ(kinds.size(), 4u);
 }
 
-TEST(Transducers, LiverSweepHasThePicturesFan) {
+TEST(Transducers, LiverSweepMatchesTheRecordedFan) {
   const auto transducer = load_transducer(kTransducersFile, "liver-sweep");
   ASSERT_TRUE(transducer) << transducer.error().text();
   const ScanGeometry::Extent extent = make_scan_geometry(*transducer, transducer->depth_mm, 256, 1024).extent();

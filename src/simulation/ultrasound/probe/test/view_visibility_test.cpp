@@ -57,7 +57,7 @@ double sum_of(const ViewVisibility& v) {
   return v.visible + v.behind_bone + v.behind_gas + v.unscanned + v.outside_picture + v.too_deep;
 }
 
-TEST(ViewVisibility, OfAFreeBallIsWhole) {
+TEST(ViewVisibility, IsOneForAnUnobstructedBall) {
   const anatomy::VirtualPatient patient = ball_behind(nothing);
   const auto placed = place_probe(patient, ball_view(), shipped_convex());
   ASSERT_TRUE(placed) << placed.error().text();
@@ -67,7 +67,7 @@ TEST(ViewVisibility, OfAFreeBallIsWhole) {
   EXPECT_EQ(hidden_causes(ViewVisibility{.visible = 1.0}), "");
 }
 
-TEST(ViewVisibility, FindsTheWindowBesideBoneBeyondTheSearch) {
+TEST(ViewVisibility, FindsAWindowBesideBone) {
   const anatomy::VirtualPatient patient = ball_behind(plate(24.0));
   const auto placed = place_probe(patient, ball_view(), shipped_convex());
   ASSERT_TRUE(placed) << placed.error().text();
@@ -78,7 +78,7 @@ TEST(ViewVisibility, FindsTheWindowBesideBoneBeyondTheSearch) {
   EXPECT_EQ(measured->visible, placed->visibility.visible);
 }
 
-TEST(ViewVisibility, SaysWhatHidesTheSubject) {
+TEST(ViewVisibility, ReportsWhatHidesTheTarget) {
   ProbeView fixed = ball_view();
   fixed.search_mm = 0.0;
   const auto behind = place_probe(ball_behind(plate(60.0)), fixed, shipped_convex());
@@ -97,7 +97,7 @@ TEST(ViewVisibility, SaysWhatHidesTheSubject) {
   EXPECT_NEAR(sum_of(gas->visibility), 1.0, 1e-9);
 }
 
-TEST(ViewVisibility, EndsWithThePictureAndWithTheSound) {
+TEST(ViewVisibility, IsLimitedByImageAndPenetrationDepth) {
   const anatomy::VirtualPatient patient = ball_behind(nothing);
   ProbeView fixed = ball_view();
   fixed.search_mm = 0.0;
@@ -122,7 +122,7 @@ TEST(ViewVisibility, EndsWithThePictureAndWithTheSound) {
   EXPECT_GT(deep->visibility.too_deep, 0.9);
 }
 
-TEST(ViewVisibility, CountsWhatTheCtHasLeftOut) {
+TEST(ViewVisibility, CountsTheUnscannedPart) {
   // Half of the ball lies beyond the end of the CT at z = 0.
   anatomy::VirtualPatient patient = ball_behind(nothing);
   volume::GridGeometry half = patient.labels.geometry;

@@ -20,7 +20,7 @@ std::vector<std::uint8_t> speckle(int level, double share) {
   return levels;
 }
 
-TEST(AutomaticGain, GivesTissueItsGrayWhateverItsLevelTheGainBeforeAndTheMap) {
+TEST(AutomaticGain, BringsTissueToItsTargetGray) {
   for (const int level : {100, 120, 160, 180})
     for (const double before_db : {-20.0, 0.0, 15.0})
       for (const GrayMap map : {GrayMap::kSoft, GrayMap::kLinear, GrayMap::kHighContrast}) {
@@ -42,7 +42,7 @@ TEST(AutomaticGain, DoesNotDependOnTheShareWithoutEcho) {
   EXPECT_NEAR(*automatic_gain_db(speckle(120, 0.9), settings), *automatic_gain_db(speckle(120, 0.3), settings), 0.5);
 }
 
-TEST(AutomaticGain, IsNoneInTheAirAndStaysInItsRange) {
+TEST(AutomaticGain, IsUnsetInAirAndStaysInRange) {
   const DisplaySettings settings;
   EXPECT_FALSE(automatic_gain_db({}, settings));
   EXPECT_FALSE(automatic_gain_db(speckle(120, 0.05), settings));

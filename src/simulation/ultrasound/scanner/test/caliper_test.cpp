@@ -24,7 +24,7 @@ TEST(Caliper, DistanceIsPixelsTimesTheirSize) {
   }
 }
 
-TEST(Caliper, MarksComeBackToTheirPixelsAndStayInTheBodyWhenThePictureChanges) {
+TEST(Caliper, MarksKeepTheirBodyPosition) {
   const RasterGeometry raster = raster_of(0.25, true);
   const DistanceCaliper caliper = place_distance(raster, {100.5, 40.25}, {12.0, 300.0});
   EXPECT_NEAR((raster.to_pixel(caliper.a_T) - Vec2(100.5, 40.25)).norm(), 0.0, 1e-9);

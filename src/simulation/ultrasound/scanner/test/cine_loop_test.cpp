@@ -81,7 +81,7 @@ TEST(CineLoop, StepsStayWithinTheRange) {
   EXPECT_EQ(loop.position(), 6);
 }
 
-TEST(CineLoop, PlaysAsFastAsItWasRecordedAndBeginsAgain) {
+TEST(CineLoop, PlaysAtTheRecordedRateAndLoops) {
   CineLoop loop = filled(8, 8);
   loop.freeze();
   loop.set_range(2, 5);  // 0.1 s apart: a round is 0.4 s
@@ -96,7 +96,7 @@ TEST(CineLoop, PlaysAsFastAsItWasRecordedAndBeginsAgain) {
   EXPECT_EQ(loop.position(), 3);
 }
 
-TEST(CineLoop, PushTakesNoMemory) {
+TEST(CineLoop, PushNeverAllocates) {
   CineLoop loop = filled(3, 2);
   const std::vector<std::uint8_t> levels(32, 1);
   const testing::AllocationGuard guard;

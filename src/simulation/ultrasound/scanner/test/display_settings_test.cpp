@@ -27,11 +27,11 @@ TEST(DisplaySettings, DefaultsAreInRange) {
   EXPECT_TRUE(check(DisplaySettings{}));
 }
 
-TEST(DisplaySettings, TheMarkedSideIsOnTheLeftByDefault) {
+TEST(DisplaySettings, MarkedSideIsOnTheLeftByDefault) {
   EXPECT_TRUE(DisplaySettings{}.is_mirrored);
 }
 
-TEST(DisplaySettings, ErrorNamesTheWrongKnob) {
+TEST(DisplaySettings, ErrorNamesTheInvalidSetting) {
   DisplaySettings settings;
   settings.dynamic_range_db = 10.0;
   ASSERT_FALSE(check(settings));
@@ -48,7 +48,7 @@ TEST(DisplaySettings, ErrorNamesTheWrongKnob) {
   EXPECT_FALSE(check(settings));
 }
 
-TEST(DisplaySettings, WrongSettingsAreHeldInTheirRange) {
+TEST(DisplaySettings, ClampsInvalidSettings) {
   DisplaySettings settings;
   settings.gain_db = 1e9;
   settings.dynamic_range_db = kNan;
@@ -60,14 +60,14 @@ TEST(DisplaySettings, WrongSettingsAreHeldInTheirRange) {
   EXPECT_EQ(held.tgc_db[7], -20.0);
 }
 
-TEST(DisplaySettings, GrayMapsAreKnownByTheirNames) {
+TEST(DisplaySettings, GrayMapsAreFoundByName) {
   for (const GrayMap map : {GrayMap::kLinear, GrayMap::kSoft, GrayMap::kHighContrast}) {
     EXPECT_EQ(parse_gray_map(name_of(map)), map);
   }
   EXPECT_FALSE(parse_gray_map("sepia"));
 }
 
-TEST(Tgc, AutomaticPartMakesGoodTheWayThereAndBack) {
+TEST(Tgc, AutomaticPartCompensatesTheRoundTripLoss) {
   DisplaySettings settings;
   settings.automatic_tgc_limit_db = 120.0;
   const double near_db = tgc_gain_db(settings, 20.0, kTgcDepth_mm, kTgcFrequency_mhz);
@@ -75,7 +75,7 @@ TEST(Tgc, AutomaticPartMakesGoodTheWayThereAndBack) {
   EXPECT_NEAR(far_db - near_db, 2.0 * 0.5 * kTgcFrequency_mhz * 4.0, 0.02);
 }
 
-TEST(Tgc, AutomaticPartEndsAtItsLimitWithoutAKink) {
+TEST(Tgc, AutomaticPartSaturatesSmoothlyAtItsLimit) {
   const DisplaySettings settings;
   EXPECT_NEAR(tgc_gain_db(settings, 300.0, 300.0, 15.0), settings.automatic_tgc_limit_db, 0.02);
   EXPECT_NEAR(tgc_gain_db(settings, 0.0, 300.0, 15.0), 0.0, 1e-9);
@@ -89,7 +89,7 @@ TEST(Tgc, AutomaticPartEndsAtItsLimitWithoutAKink) {
   }
 }
 
-TEST(Tgc, EachSliderIsObeyedAtItsDepth) {
+TEST(Tgc, EachSliderSetsTheGainAtItsDepth) {
   DisplaySettings settings = without_automatic_tgc();
   const double flat_db = tgc_gain_db(settings, 80.0, kTgcDepth_mm, kTgcFrequency_mhz);
   EXPECT_NEAR(flat_db, 0.0, 1e-4);
@@ -117,7 +117,7 @@ TEST(Tgc, NeverLeavesTheRangeOfNeighbouringSliders) {
   }
 }
 
-TEST(GrayMap, GrowsFromBlackToWhiteOverTheDynamicRange) {
+TEST(GrayMap, RisesFromBlackToWhiteOverTheDynamicRange) {
   for (const GrayMap map : {GrayMap::kLinear, GrayMap::kSoft, GrayMap::kHighContrast}) {
     DisplaySettings settings;
     settings.gray_map = map;

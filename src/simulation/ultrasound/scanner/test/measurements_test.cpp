@@ -9,7 +9,7 @@ DistanceCaliper distance(double mm) {
   return {{0.0, 10.0}, {0.0, 10.0 + mm}};
 }
 
-TEST(Measurements, UndoAndRedoWalkThroughWhatWasDone) {
+TEST(Measurements, UndoAndRedoStepThroughEdits) {
   Measurements list;
   EXPECT_FALSE(list.can_undo());
   list.undo();
@@ -34,7 +34,7 @@ TEST(Measurements, UndoAndRedoWalkThroughWhatWasDone) {
   EXPECT_DOUBLE_EQ(std::get<DistanceCaliper>(list.items()[1]).distance_mm(), 30.0);
 }
 
-TEST(Measurements, ForgetTheOldestStepsAlone) {
+TEST(Measurements, DropOnlyTheOldestSteps) {
   Measurements list;
   for (int n = 0; n < 300; ++n) list.add(distance(n));
   EXPECT_EQ(list.items().size(), 300U);
@@ -43,7 +43,7 @@ TEST(Measurements, ForgetTheOldestStepsAlone) {
   EXPECT_EQ(steps, 99);
 }
 
-TEST(Measurements, AMovedMarkLiesWhereItWasPut) {
+TEST(Measurements, MovedMarkKeepsItsNewPosition) {
   const std::vector<Measurement> all = {distance(20.0), EllipseCaliper{{-10.0, 50.0}, {10.0, 52.0}, 6.0},
                                         AngleCaliper{{0, 0}, {10, 0}, {0, 10}}};
   for (const Measurement& measurement : all) {
@@ -67,7 +67,7 @@ TEST(Measurements, AMovedMarkLiesWhereItWasPut) {
   EXPECT_NEAR((marks_T(lying)[2] - Vec2(0.0, 56.0)).norm(), 0.0, 1e-12);
 }
 
-TEST(Measurements, ADragIsOneStepAndAnyOneCanBeRemoved) {
+TEST(Measurements, DragIsOneStepAndAnyItemCanBeRemoved) {
   Measurements list;
   list.add(distance(10));
   list.add(distance(20));

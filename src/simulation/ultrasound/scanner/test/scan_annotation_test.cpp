@@ -41,14 +41,14 @@ TEST(ScanAnnotation, TicksLieAtTheirDepthBelowTheFace) {
   for (const char* label : {"0", "5", "10", "15", "C5-2", "Depth 16.0 cm"}) EXPECT_TRUE(has_text(annotation, label));
 }
 
-TEST(ScanAnnotation, ShallowPicturesHaveAFinerScale) {
+TEST(ScanAnnotation, ShallowImagesHaveAFinerScale) {
   const ScanGeometry scan = fan_of_depth(40.0);
   const ScanAnnotation annotation = make_scan_annotation(fit_raster(scan, 640, 480), scan, caption());
   EXPECT_EQ(annotation.ticks.size(), 9U);
   EXPECT_TRUE(has_text(annotation, "4"));
 }
 
-TEST(ScanAnnotation, MarkerStaysWithTheMarkedEndWhenThePictureIsMirrored) {
+TEST(ScanAnnotation, MarkerFollowsItsEndWhenMirrored) {
   const ScanGeometry scan = fan_of_depth(160.0);
   for (const bool is_mirrored : {false, true}) {
     const RasterGeometry raster = fit_raster(scan, 640, 480, is_mirrored);
@@ -59,7 +59,7 @@ TEST(ScanAnnotation, MarkerStaysWithTheMarkedEndWhenThePictureIsMirrored) {
   }
 }
 
-TEST(ScanAnnotation, TheWholeMarkerIsInThePictureOfALinearArray) {
+TEST(ScanAnnotation, MarkerFitsTheImageOfALinearArray) {
   ScanGeometry scan;
   scan.is_fan = false;
   scan.lines = 128;
@@ -101,7 +101,7 @@ TEST(ScanAnnotation, WedgeShowsTheGrayMap) {
   EXPECT_TRUE(std::is_sorted(annotation.wedge.gray.rbegin(), annotation.wedge.gray.rend()));
 }
 
-TEST(ScanAnnotation, DrawsOverAPictureAndNeverBeyondIt) {
+TEST(ScanAnnotation, DrawsWithinTheImage) {
   const ScanGeometry scan = fan_of_depth(160.0);
   const ScanAnnotation annotation = make_scan_annotation(fit_raster(scan, 640, 480), scan, caption());
   volume::RgbImage image(640, 480);
@@ -115,7 +115,7 @@ TEST(ScanAnnotation, DrawsOverAPictureAndNeverBeyondIt) {
   draw_annotation(none, annotation);
 }
 
-TEST(ScanAnnotation, GrayBecomesRgb) {
+TEST(ScanAnnotation, ConvertsGrayToRgb) {
   const volume::RgbImage image = to_rgb({2, 1, {7, 200}});
   EXPECT_EQ(image.at(0, 0), (volume::Rgb{7, 7, 7}));
   EXPECT_EQ(image.at(1, 0), (volume::Rgb{200, 200, 200}));

@@ -75,7 +75,7 @@ void expect_reproduced(const ScanGeometry& scan, bool is_mirrored,
   EXPECT_GT(inside, 3000);
 }
 
-TEST(ScanConversion, ReproducesWhatIsLinearAlongAndAcrossLines) {
+TEST(ScanConversion, ReproducesLinearGradients) {
   for (const ScanGeometry& scan : {converted_fan(), parallel()}) {
     for (const bool is_mirrored : {false, true}) {
       expect_reproduced(scan, is_mirrored, slope_along);
@@ -84,7 +84,7 @@ TEST(ScanConversion, ReproducesWhatIsLinearAlongAndAcrossLines) {
   }
 }
 
-TEST(ScanConversion, PixelsBeyondTheScanAreBlackAndItsEdgeIsClean) {
+TEST(ScanConversion, PixelsOutsideTheScanAreBlack) {
   for (const ScanGeometry& scan : {converted_fan(), parallel()}) {
     const RasterGeometry raster = fit_raster(scan, 203, 150);
     const std::vector<std::uint8_t> pixels = converted(scan, raster, white);

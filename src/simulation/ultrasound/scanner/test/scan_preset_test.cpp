@@ -11,7 +11,7 @@
 namespace trocar::ultrasound {
 namespace {
 
-TEST(ScanPreset, ThoseThatShipFitTheirTransducers) {
+TEST(ScanPreset, ShippedOnesFitTheirTransducers) {
   const auto presets = load_scan_presets(data_dir() / "scan_presets.toml");
   ASSERT_TRUE(presets) << presets.error().text();
   EXPECT_GE(presets->size(), 3U);
@@ -25,7 +25,7 @@ TEST(ScanPreset, ThoseThatShipFitTheirTransducers) {
   }
 }
 
-TEST(ScanPreset, WhatIsWrongIsNamed) {
+TEST(ScanPreset, NamesTheInvalidKey) {
   const struct {
     const char* row;
     const char* says;

@@ -26,7 +26,7 @@ double db_of(std::uint16_t level) {
   return kLevelFloor_db + level / kFineLevels_per_db;
 }
 
-TEST(Detect, LogarithmIsExactToTheLevelsResolution) {
+TEST(Detect, LogarithmIsExactToOneLevel) {
   std::vector<float> re, im;
   for (double db = -79.9; db < 47.4; db += 0.003) {
     const double amplitude = std::pow(10.0, db / 20.0);
@@ -41,20 +41,20 @@ TEST(Detect, LogarithmIsExactToTheLevelsResolution) {
   }
 }
 
-TEST(Detect, EndsAreReachedWhateverTheLength) {
+TEST(Detect, ProcessesEveryLengthCompletely) {
   for (std::size_t n = kMostLanes; n < 3 * kMostLanes; ++n) {
     const std::vector<float> re(n, 1.0F), im(n, 0.0F);
     for (const std::uint16_t level : detected(re, im)) ASSERT_NEAR(db_of(level), 0.0, kLogError_db);
   }
 }
 
-TEST(Detect, LevelsBeyondTheRangeStayAtItsEnds) {
+TEST(Detect, ClampsLevelsToTheRange) {
   const std::vector<float> zero(kMostLanes, 0.0F), huge(kMostLanes, 1e15F);
   EXPECT_EQ(detected(zero, zero)[0], 0);
   EXPECT_EQ(detected(huge, zero)[0], 65535);
 }
 
-TEST(Detect, WhatIsNoNumberIsSilentAndAlone) {
+TEST(Detect, NonFiniteSampleIsBlackWithoutSpreading) {
   const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                        -std::numeric_limits<float>::infinity(), 3e38F};
   for (const float value : bad) {
@@ -83,7 +83,7 @@ TEST(Detect, SumsEchoNoiseAndClutter) {
   EXPECT_NEAR(db_of(level[kCount - 1]), 20.0 * std::log10(std::hypot(2.0, 2.0)), kLogError_db);
 }
 
-TEST(Persist, KeepsThePartOfTheLastPicture) {
+TEST(Persist, BlendsWithTheLastImage) {
   std::vector<std::uint16_t> state(32, 1000);
   const std::vector<std::uint16_t> fresh(32, 51000);
   persist(fresh.data(), 0.75F, 30, state.data());
@@ -91,7 +91,7 @@ TEST(Persist, KeepsThePartOfTheLastPicture) {
   EXPECT_EQ(state[29], 13500);
 }
 
-TEST(Persist, ReachesAStandingPicture) {
+TEST(Persist, ConvergesToAStaticImage) {
   std::vector<std::uint16_t> state(kMostLanes, 65535);
   const std::vector<std::uint16_t> fresh(kMostLanes, 20000);
   for (int i = 0; i < 300; ++i) persist(fresh.data(), 0.95F, kMostLanes, state.data());

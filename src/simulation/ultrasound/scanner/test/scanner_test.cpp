@@ -69,7 +69,7 @@ Scanner make_scanner(bool noise, bool clutter) {
   return scanner;
 }
 
-TEST(Scanner, TgcMakesAttenuatedLiverEven) {
+TEST(Scanner, TgcFlattensAttenuatedLiver) {
   Scanner scanner = make_scanner(false, false);
   scanner.settings.automatic_tgc_limit_db = 120.0;
   scanner.show(liver_frame(1), 1);
@@ -78,7 +78,7 @@ TEST(Scanner, TgcMakesAttenuatedLiverEven) {
   }
 }
 
-TEST(Scanner, LiverIsAsGrayAsInTheRealSweep) {
+TEST(Scanner, LiverGrayMatchesTheRealSweep) {
   // Liver of the sweep (docs/validation.md): mean 40..48, standard deviation 10..13 gray values, skewed to the bright.
   Scanner scanner = make_scanner(true, true);
   scanner.settings.gain_db = -8.0;  // as behind an abdominal wall
@@ -102,7 +102,7 @@ TEST(Scanner, LiverIsAsGrayAsInTheRealSweep) {
   EXPECT_GT(third, 0.0);
 }
 
-TEST(Scanner, NoiseIsAsStrongAsLiverAtTheDepthOfPenetration) {
+TEST(Scanner, NoiseEqualsLiverAtThePenetrationDepth) {
   Scanner scanner = make_scanner(true, false);
   scanner.settings.automatic_tgc_limit_db = 120.0;
   scanner.show(silent_frame(), 3);
@@ -152,7 +152,7 @@ TEST(Scanner, NoiseFollowsTheSeed) {
   EXPECT_NE(first, other);
 }
 
-TEST(Scanner, ClutterHazesTheNearFieldAndStaysWithTheTransducer) {
+TEST(Scanner, ClutterHazesTheNearFieldAndMovesWithTheProbe) {
   Scanner scanner = make_scanner(false, true);
   scanner.show(silent_frame(), 1);
   const std::vector<std::uint8_t> first = scanner.levels();
@@ -165,7 +165,7 @@ TEST(Scanner, ClutterHazesTheNearFieldAndStaysWithTheTransducer) {
   EXPECT_EQ(first, scanner.levels());
 }
 
-TEST(Scanner, SamplesThatAreNoNumberAreBlackAndAlone) {
+TEST(Scanner, NonFiniteSamplesAreBlackWithoutSpreading) {
   Scanner scanner = make_scanner(true, true);
   BasebandFrame frame = liver_frame(4);
   scanner.show(frame, 1);
@@ -258,7 +258,7 @@ TEST(Scanner, MirrorSwapsLeftAndRight) {
   EXPECT_LT(differences, 10);
 }
 
-TEST(Scanner, ShowTakesNoMemoryWhileTheGeometryStays) {
+TEST(Scanner, ShowNeverAllocatesForConstantGeometry) {
   Scanner scanner = make_scanner(true, true);
   scanner.settings.persistence = 0.4;
   const BasebandFrame frame = liver_frame(8);

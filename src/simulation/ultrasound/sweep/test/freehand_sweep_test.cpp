@@ -30,7 +30,7 @@ FreehandVolume reconstruct_poses(const std::vector<Pose>& poses, double spacing_
   return volume ? *std::move(volume) : FreehandVolume{};
 }
 
-TEST(FreehandSweep, ATiltReconstructsToTheVolumeOfTheMotor) {
+TEST(FreehandSweep, TiltReconstructsTheMotorVolume) {
   MechanicalSweepOptions options = lab_options();
   options.step_rad = 0.008;  // no holes between the frames
   const auto direct = make_mechanical_sweep(lab_scene(), motor_probe(), {}, options);
@@ -48,14 +48,14 @@ TEST(FreehandSweep, ATiltReconstructsToTheVolumeOfTheMotor) {
   EXPECT_GT(volume::correlation(direct->gray.voxels, resampled, volume::ComparedVoxels::kBothAboveZero), 0.9);
 }
 
-TEST(FreehandSweep, ASlideShowsPointsWhereTheyAre) {
+TEST(FreehandSweep, SlideReconstructsPointsAtTheirPositions) {
   volume::FloatGrid flat_skin = lab_scene()->skin_distance_mm;
   const FreehandVolume volume = reconstruct_poses(slide_over_skin(flat_skin, {}, 50.0, 51), 0.7);
   for (const AcousticPoint& point : lab_points())
     EXPECT_LT((brightest_near(volume.gray, point.p_P) - point.p_P).norm(), kPlace_mm) << point.p_P.transpose();
 }
 
-TEST(FreehandSweep, ASlideKeepsTheFaceAsDeepOnACurvedSkin) {
+TEST(FreehandSweep, SlideKeepsItsPressureOnCurvedSkin) {
   // A leg along x with a radius of 80 mm: the skin falls back to both sides in z.
   volume::GridGeometry geometry;
   geometry.size = {41, 101, 101};
@@ -87,7 +87,7 @@ TEST(FreehandSweep, ASlideBesideTheBodyStaysStraight) {
   for (const Pose& pose : poses) EXPECT_TRUE(pose.is_finite());
 }
 
-TEST(FreehandSweep, AHandThatHoldsStillIsNeverAtTheSamePlaceAgain) {
+TEST(FreehandSweep, StillHandNeverRepeatsAPosition) {
   const Pose X_PT = Pose::translation({5.0, 6.0, 7.0});
   std::vector<Vec3> places{X_PT.p()};
   for (int n = 0; n < 300; ++n) {
@@ -98,7 +98,7 @@ TEST(FreehandSweep, AHandThatHoldsStillIsNeverAtTheSamePlaceAgain) {
   }
 }
 
-TEST(FreehandSweep, EveryFrameSaysWhereAndWhenAsPlusDoes) {
+TEST(FreehandSweep, FramesStorePoseAndTimeLikePlus) {
   FreehandSweepOptions options;
   options.acquisition = lab_options().acquisition;
   options.columns = 64;

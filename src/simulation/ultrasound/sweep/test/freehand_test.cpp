@@ -55,7 +55,7 @@ FreehandVolume reconstruct(const TrackedSequence& sequence, const FreehandOption
   return volume ? *std::move(volume) : FreehandVolume{};
 }
 
-TEST(Freehand, StacksParallelPicturesExactly) {
+TEST(Freehand, StacksParallelImagesExactly) {
   const TrackedSequence sequence = make_sequence(5, 4, 3, numbered);
   for (const auto interpolation : {FreehandInterpolation::kNearest, FreehandInterpolation::kLinear}) {
     FreehandOptions options;
@@ -153,7 +153,7 @@ TEST(Freehand, AgreesWithTheSlowDefinition) {
   EXPECT_EQ(reconstruct(sequence, options).gray.voxels, volume.gray.voxels);
 }
 
-TEST(Freehand, RestoresASmoothFieldFromTiltedPictures) {
+TEST(Freehand, RestoresASmoothFieldFromTiltedImages) {
   const auto field = [](const Vec3& p) {
     return 128.0 + 60.0 * std::sin(0.5 * p[0]) * std::cos(0.4 * p[1] + 0.3 * p[2]);
   };
@@ -187,7 +187,7 @@ TEST(Freehand, RestoresASmoothFieldFromTiltedPictures) {
   EXPECT_LT(error_of(FreehandInterpolation::kLinear), 3.0);
 }
 
-TEST(Freehand, LeavesOutInvalidPicturesAndThoseWithoutAPlace) {
+TEST(Freehand, SkipsInvalidImagesAndImagesWithoutPose) {
   TrackedSequence sequence = make_sequence(5, 4, 3, numbered);
   sequence.frames[0].is_valid = false;
   sequence.frames[2].transforms.clear();
@@ -198,7 +198,7 @@ TEST(Freehand, LeavesOutInvalidPicturesAndThoseWithoutAPlace) {
   EXPECT_EQ(volume.gray.voxels[0], numbered(1, 0, 0));
 }
 
-TEST(Freehand, SaysWhichTransformIsMissing) {
+TEST(Freehand, NamesAMissingTransform) {
   const TrackedSequence sequence = make_sequence(5, 4, 3, numbered);
   FreehandOptions options;
   options.reference_frame = "Bed";
@@ -230,7 +230,7 @@ TEST(Freehand, ClipsToAFan) {
   EXPECT_NEAR(static_cast<double>(volume.voxels_met), area, 0.5 * edge);
 }
 
-TEST(Freehand, LeavesOutDarkPixelsAndTheBlackMargin) {
+TEST(Freehand, SkipsDarkPixelsAndTheBlackMargin) {
   // Column 0 is black in both pictures, column 1 only in the second.
   TrackedSequence sequence = make_sequence(4, 3, 2, [](std::size_t frame, int column, int) {
     return static_cast<std::uint8_t>(column == 0 ? 0 : column == 1 && frame == 1 ? 0 : 50);
@@ -246,7 +246,7 @@ TEST(Freehand, LeavesOutDarkPixelsAndTheBlackMargin) {
   EXPECT_EQ((reconstruct(sequence, options).gray[{0, 0, 0}]), 50);
 }
 
-TEST(Freehand, RefusesWhatCannotBe) {
+TEST(Freehand, RefusesImpossibleOptions) {
   TrackedSequence sequence = make_sequence(5, 4, 3, numbered);
   const auto is_refused = [&](const std::function<void(FreehandOptions&)>& change) {
     FreehandOptions options;

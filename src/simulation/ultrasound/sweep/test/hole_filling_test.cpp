@@ -77,7 +77,7 @@ TEST(HoleFilling, GaussianWeighsByDistance) {
   EXPECT_NEAR((slices.gray[{20, 20, 2}]), (100 * near + 140 * far) / (near + far), 0.51);
 }
 
-TEST(HoleFilling, AsksForAShareOfKnownVoxels) {
+TEST(HoleFilling, RequiresAShareOfKnownVoxels) {
   // A cube of 3 beside a slice knows 9 of 27.
   const auto filled = [](double least_share) {
     TwoSlices slices(8, 100, 140);
@@ -88,7 +88,7 @@ TEST(HoleFilling, AsksForAShareOfKnownVoxels) {
   EXPECT_EQ(filled(0.34), 0U);
 }
 
-TEST(HoleFilling, TriesOneWayAfterTheOther) {
+TEST(HoleFilling, TriesMethodsInOrder) {
   TwoSlices slices(9, 100, 140);
   const HoleFilling stick, nearest{.kind = HoleFilling::Kind::kNearest, .size = 3};
   EXPECT_EQ(detail::fill_holes(slices.gray, slices.known, {stick, nearest}), 4U * 40 * 40);

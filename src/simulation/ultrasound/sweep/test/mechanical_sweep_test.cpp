@@ -22,7 +22,7 @@ SweepGeometry geometry() {
   return sweep;
 }
 
-TEST(SweepGeometry, PlacesAndPointsAreExactInverses) {
+TEST(SweepGeometry, SamplesAndPointsAreExactInverses) {
   const SweepGeometry sweep = geometry();
   Random random(3);
   for (int n = 0; n < 2000; ++n) {
@@ -45,7 +45,7 @@ TEST(SweepGeometry, SwingsAboutAnAxisBehindTheFace) {
   EXPECT_NEAR(sweep.frame_pose(60.0).R().determinant(), 1.0, 1e-12);
 }
 
-TEST(SweepGeometry, ExtentHoldsAllSamplesAndNoMore) {
+TEST(SweepGeometry, ExtentIsTheTightestBoxOfAllSamples) {
   const SweepGeometry sweep = geometry();
   Vec3 first = Vec3::Constant(1e9), last = Vec3::Constant(-1e9);
   for (double frame = 0.0; frame <= 60.0; frame += 1.0)
@@ -66,14 +66,14 @@ const Result<SweepVolume>& lab_volume() {
   return volume;
 }
 
-TEST(MechanicalSweep, ShowsPointsWhereTheyAre) {
+TEST(MechanicalSweep, ShowsPointsAtTheirPositions) {
   const auto& volume = lab_volume();
   ASSERT_TRUE(volume) << volume.error().text();
   for (const AcousticPoint& point : lab_points())
     EXPECT_LT((brightest_near(volume->gray, point.p_P) - point.p_P).norm(), kPlace_mm) << point.p_P.transpose();
 }
 
-TEST(MechanicalSweep, LiesInThePatientAsTheTransducerDoes) {
+TEST(MechanicalSweep, FollowsTheTransducerPose) {
   const Pose X_PT(rotation_between(Vec3::UnitZ(), Vec3(0.2, -0.5, 0.7).normalized()), {10.0, -20.0, 30.0});
   const auto volume = make_mechanical_sweep(moved(*lab_scene(), X_PT), motor_probe(), X_PT, lab_options());
   ASSERT_TRUE(volume) << volume.error().text();
@@ -84,7 +84,7 @@ TEST(MechanicalSweep, LiesInThePatientAsTheTransducerDoes) {
   }
 }
 
-TEST(MechanicalSweep, SpeckleBelongsToTheTissueAndNoiseToTheSeed) {
+TEST(MechanicalSweep, SpeckleDependsOnTheTissueAndNoiseOnTheSeed) {
   MechanicalSweepOptions options = lab_options();
   options.acquisition.artefacts.noise = true;
   const auto first = make_mechanical_sweep(lab_scene(), motor_probe(), {}, options);
@@ -119,7 +119,7 @@ TEST(MechanicalSweep, IsBlackBesideTheFan) {
   EXPECT_GT(static_cast<double>(lit), 0.8 * static_cast<double>(inside));
 }
 
-TEST(MechanicalSweep, RefusesWhatCannotBe) {
+TEST(MechanicalSweep, RefusesImpossibleOptions) {
   const auto refused = [](const Transducer& transducer, const MechanicalSweepOptions& options) {
     const auto volume = make_mechanical_sweep(lab_scene(), transducer, {}, options);
     return !volume && volume.error().exit_status == 2;

@@ -18,7 +18,7 @@ GraphMatrix moved_matrix(double angle_rad, double x, double y, double z, double 
   return affine.matrix();
 }
 
-TEST(TransformGraph, GoesThroughTheTrackerAndBack) {
+TEST(TransformGraph, ChainsForwardAndInverseTransforms) {
   const GraphMatrix probe = moved_matrix(0.3, 1, 2, 3), reference = moved_matrix(-0.7, 4, 5, 6),
                     image = moved_matrix(0.1, 7, 8, 9, 0.08);
   TransformGraph graph;
@@ -44,7 +44,7 @@ TEST(TransformGraph, LaterTransformsOfANameReplaceEarlierOnes) {
   EXPECT_EQ((*graph.find("Image", "Reference"))(0, 3), 2.0);
 }
 
-TEST(TransformGraph, KnowsNamesThatHoldToThemselves) {
+TEST(TransformGraph, ParsesFrameNamesThatContainTo) {
   TransformGraph graph;
   graph.add({{"ToolToTracker", moved_matrix(0.0, 3, 0, 0)}, {"TorsoToTracker", moved_matrix(0.0, 1, 0, 0)}});
   ASSERT_TRUE(graph.find("Tool", "Torso"));
@@ -60,7 +60,7 @@ TEST(TransformGraph, DoesNotInvertAProjection) {
   EXPECT_FALSE(graph.find("Reference", "Image"));
 }
 
-TEST(TransformGraph, SaysWhatIsMissing) {
+TEST(TransformGraph, NamesTheMissingTransform) {
   TransformGraph graph;
   graph.add({{"ProbeToTracker", GraphMatrix::Identity()}, {"ReferenceToTracker", GraphMatrix::Identity()}});
   EXPECT_FALSE(graph.find("Image", "Reference"));

@@ -116,7 +116,7 @@ TEST(AcousticScene, WallOfOneVoxelHasNoHole) {
   }
 }
 
-TEST(AcousticScene, ThinVesselsAndRibsStayWhole) {
+TEST(AcousticScene, ThinVesselsAndRibsStayConnected) {
   struct Tube {
     Vec3 direction;
     double diameter_mm;
@@ -155,7 +155,7 @@ TEST(AcousticScene, ThinVesselsAndRibsStayWhole) {
   }
 }
 
-TEST(AcousticScene, LayerThatMovesByMoreThanItsThicknessStaysBetweenItsNeighbours) {
+TEST(AcousticScene, SteepThinLayerStaysBetweenItsNeighbours) {
   // From one slice to the next (5 mm) the layer moves by 7 mm; in a slice it is 3 mm wide.
   const Vec3 normal = Vec3(5.0, 0.0, 7.0).normalized();
   const double half_mm = 1.5 * normal.x();
@@ -219,7 +219,7 @@ TEST(AcousticScene, GridIsNotMuchFinerThanTheCt) {
   EXPECT_DOUBLE_EQ(make_block_scene(patient, 2.0)->geometry.spacing_mm.x(), 2.0);
 }
 
-TEST(AcousticScene, UnlabelledTissueAndGasInBowelAreWhatTheirHuSay) {
+TEST(AcousticScene, ClassifiesUnlabelledTissueAndBowelGasByHu) {
   const anatomy::VirtualPatient patient = make_block({60, 60, 40}, {1.0, 1.0, 2.0}, [](const Vec3& p_P) {
     if (p_P.z() > 0.0) return BlockVoxel{kBowel, static_cast<std::int16_t>(p_P.x() < 0.0 ? -900 : 30)};
     const int hu = p_P.x() < -15.0 ? -900 : p_P.x() < 0.0 ? -100 : p_P.x() < 15.0 ? 40 : 700;
@@ -235,7 +235,7 @@ TEST(AcousticScene, UnlabelledTissueAndGasInBowelAreWhatTheirHuSay) {
   EXPECT_NEAR(texture_hu_at(*scene, {10, 20, 10}), 0.0, kTextureStep_hu);  // gas is not in its mean
 }
 
-TEST(AcousticScene, TextureShowsADeviationAndNoNeighbour) {
+TEST(AcousticScene, TextureShowsDeviationsWithoutNeighbourTissue) {
   const Vec3 lesion_P(-10.0, 24.0, 0.0);
   const anatomy::VirtualPatient patient = make_block({60, 60, 40}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
     if (p_P.x() > 0.0) return BlockVoxel{kLung, -800};
@@ -284,7 +284,7 @@ TEST(AcousticScene, ThickAxisMayBeAnyOfTheThree) {
   EXPECT_LT(differing, kidney / 5);  // at the poles of the ball, which lie elsewhere
 }
 
-TEST(AcousticScene, MixedCellsAreThoseWithTwoTissues) {
+TEST(AcousticScene, MixedCellsContainTwoTissues) {
   AcousticScene scene;
   scene.geometry.size = {9, 7, 6};
   std::uint32_t state = 7;
@@ -306,7 +306,7 @@ TEST(AcousticScene, MixedCellsAreThoseWithTwoTissues) {
   }
 }
 
-TEST(AcousticScene, SaysWhichTissueTheTableLacks) {
+TEST(AcousticScene, NamesATissueMissingInTheTable) {
   const auto patient = make_block({20, 30, 20}, {1, 1, 2}, [](const Vec3&) { return BlockVoxel{kLiver, 60}; });
   AcousticTable table = make_block_table();
   std::erase_if(table.tissues, [](const AcousticTissue& tissue) { return tissue.name == "kidney"; });

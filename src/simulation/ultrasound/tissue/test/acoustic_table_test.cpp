@@ -27,7 +27,7 @@ const AcousticTissue& tissue(const AcousticTable& table, std::string_view name) 
   return table.tissues[index.value_or(0)];
 }
 
-TEST(AcousticTable, HasTheTissuesThatAreFeltAndItsOwn) {
+TEST(AcousticTable, CoversTheHapticTissuesAndItsOwn) {
   const auto felt = anatomy::load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(felt) << felt.error().text();
   std::set<std::string> expected = {"air", "water", "gel", "kidney_pyramid", "renal_sinus"};
@@ -43,7 +43,7 @@ TEST(AcousticTable, AirIsFirstAndUnknownNamesAreNotFound) {
   EXPECT_FALSE(table.find("unobtainium"));
 }
 
-TEST(AcousticTable, EchoesAreInRadiologysOrder) {
+TEST(AcousticTable, EchoLevelsMatchRadiologicalOrder) {
   const AcousticTable table = shipped_acoustics();
   double last_db = 100.0;
   for (const char* name : {"organ", "spleen", "liver", "kidney", "vessel", "gallbladder"}) {
@@ -53,7 +53,7 @@ TEST(AcousticTable, EchoesAreInRadiologysOrder) {
   EXPECT_EQ(tissue(table, "liver").backscatter_db, 0.0);
 }
 
-TEST(AcousticTable, BordersReflectAsIsTaught) {
+TEST(AcousticTable, BorderReflectionsMatchTextbookValues) {
   const AcousticTable table = shipped_acoustics();
   const auto echo = [&](const char* from, const char* to) {
     return reflection(tissue(table, from).impedance_mrayl(), tissue(table, to).impedance_mrayl());
@@ -84,7 +84,7 @@ TEST(AcousticTable, AttenuationFollowsItsPowerOfFrequency) {
   EXPECT_NEAR(t.attenuation_db_per_cm(4.0), 4.0, 1e-12);
 }
 
-TEST(AcousticTable, VesselsWithContrastMediumAndLesionsAreDarkInLiver) {
+TEST(AcousticTable, ContrastVesselsAndLesionsAreDarkInLiver) {
   const AcousticTissue liver = tissue(shipped_acoustics(), "liver");
   EXPECT_EQ(liver.texture_db(0.0), 0.0);
   EXPECT_LE(liver.texture_db(40.0), -15.0);
@@ -142,7 +142,7 @@ TEST(AcousticTable, NamesTheWallThatIsWrong) {
   }
 }
 
-TEST(AcousticTable, AirMustComeFirst) {
+TEST(AcousticTable, RequiresAirFirst) {
   const auto table = load_changed_acoustics("[tissues.air]", "[tissues.vacuum]");
   ASSERT_FALSE(table);
   EXPECT_NE(table.error().text().find("air"), std::string::npos);

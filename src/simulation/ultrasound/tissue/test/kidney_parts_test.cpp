@@ -71,7 +71,7 @@ TEST(KidneyParts, CortexIsOutside) {
   }
 }
 
-TEST(KidneyParts, FatInTheHilumBecomesSinusAndOtherTissueDoesNot) {
+TEST(KidneyParts, TurnOnlyFatInTheHilumIntoSinus) {
   AcousticScene fat = kidney(true), liver = kidney(true, kLiver);
   add_kidney_parts(fat);
   add_kidney_parts(liver);
@@ -81,7 +81,7 @@ TEST(KidneyParts, FatInTheHilumBecomesSinusAndOtherTissueDoesNot) {
   EXPECT_EQ(liver.tissue[in_hilum], kLiver);
 }
 
-TEST(KidneyParts, LeaveSmallPiecesAndOtherTablesAsTheyAre) {
+TEST(KidneyParts, LeaveSmallPiecesAndOtherTablesUnchanged) {
   AcousticScene small = kidney(false);
   for (std::size_t at = 0; at < small.tissue.size(); ++at)
     if (small.geometry.index_of(at)[2] > 30) small.tissue[at] = kFat;

@@ -39,7 +39,7 @@ TEST(ScanEnds, AreTheFacesThatCutTheBody) {
   EXPECT_TRUE(find_scan_ends(anatomy::VirtualPatient{}).empty());
 }
 
-TEST(ScanEnds, ShareAndPolygonOfHalfAPicture) {
+TEST(ScanEnds, ComputeShareAndPolygonOfAHalfImage) {
   const std::vector<ScanEnd> ends = {{Vec3::UnitX(), 0.0}};
   EXPECT_NEAR(unscanned_share(ends, Pose(), short_fan()), 0.5, 1e-6);
   EXPECT_EQ(unscanned_share({}, Pose(), short_fan()), 0.0);
@@ -50,7 +50,7 @@ TEST(ScanEnds, ShareAndPolygonOfHalfAPicture) {
   EXPECT_EQ(scanned_polygon_T({{Vec3::UnitZ(), 1.0}}, Pose(), short_fan()).size(), 4u);
 }
 
-TEST(ScanEnds, HatchLiesBeyondThemAndWithinTheScan) {
+TEST(ScanEnds, HatchLiesBeyondTheEndsWithinTheScan) {
   const RasterGeometry raster = fit_raster(short_fan(), 200, 160);
   volume::RgbImage image(200, 160);
   hatch_unscanned(image, raster, short_fan(), Pose(), {{Vec3::UnitX(), 0.0}});

@@ -83,7 +83,7 @@ double spread_mm2(const volume::FloatGrid& grid, const Vec3& from_P, Eigen::Inde
   return second / sum;
 }
 
-TEST(ContrastFlow, NamesThePlaceOfTheTip) {
+TEST(ContrastFlow, NamesTheTissueAtTheTip) {
   const ContrastFlow flow = make_flow(make_patient());
   EXPECT_EQ(flow.place({0, 0, 10}), ContrastPlace::kDuct);
   EXPECT_EQ(flow.place({-20, 0, 20}), ContrastPlace::kVessel);
@@ -154,7 +154,7 @@ double share_moment(int power) {
   return sum / (3.0 * kIntervals);
 }
 
-TEST(ContrastFlow, StainInUniformTissueFallsFromTheTipAsThePressureDoes) {
+TEST(ContrastFlow, UniformTissueStainFollowsThePressure) {
   const ContrastTable table = lasting_table(true);
   const auto patient = make_labelled_patient({120, 120, 120}, {2, 2, 2}, {{"liver", "liver", everywhere()}});
   ContrastFlow flow = make_flow(patient, {}, table);
@@ -197,7 +197,7 @@ double variation(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size()) - mean * mean) / mean;
 }
 
-TEST(ContrastFlow, StainInTissueIsIrregularAndKeepsVolumeAndIodine) {
+TEST(ContrastFlow, TissueStainIsIrregularAndConservesIodine) {
   const auto patient = make_labelled_patient({120, 120, 120}, {2, 2, 2}, {{"liver", "liver", everywhere()}});
   const Vec3 tip(3, -2, 1);
   std::array<double, 2> found{};
@@ -257,7 +257,7 @@ TEST(ContrastFlow, BlushStaysInItsOrgan) {
   EXPECT_EQ(totals.ducts_mg, 0.0);
 }
 
-TEST(ContrastFlow, SmallOrganTakesWhatItHolds) {
+TEST(ContrastFlow, SmallOrganIsLimitedToItsCapacity) {
   ContrastTable table = shipped_table();
   for (ContrastMedium& medium : table.media) medium.fade_s = 0.0;
   const auto patient = make_labelled_patient(
@@ -334,7 +334,7 @@ Vec3 laminar(const Vec3& p_P, double) {
   return {0.0, 200.0 * std::max(1.0 - square, 0.0), 0.0};
 }
 
-TEST(ContrastFlow, StreakFansFromTheTipToTheWallsAndStaysInside) {
+TEST(ContrastFlow, StreakWidensToTheWallsAndStaysInside) {
   const auto patient = make_patient();
   ContrastFlow flow = make_flow(patient, laminar);
   const Vec3 tip(-18, -30, 19);
@@ -363,7 +363,7 @@ TEST(ContrastFlow, StreakFansFromTheTipToTheWallsAndStaysInside) {
   EXPECT_GT(widest_mm, 0.75 * 5.0) << "it reaches the walls 25 mm down the flow";
 }
 
-TEST(ContrastFlow, StreakWashesOutInWispsWhereFlowIsLaminar) {
+TEST(ContrastFlow, StreakWashesOutGraduallyInLaminarFlow) {
   /// Length over which the iodine per length rises from a tenth to nine tenths, behind the tail.
   const auto tail_mm = [](const BloodVelocity& blood) {
     ContrastFlow flow = make_flow(make_patient(), blood);
@@ -386,7 +386,7 @@ TEST(ContrastFlow, StreakWashesOutInWispsWhereFlowIsLaminar) {
   EXPECT_LE(tail_mm([](const Vec3&, double) { return Vec3(0, 150, 0); }), 8.0) << "a plug";
 }
 
-TEST(ContrastFlow, WithoutBloodFlowAVesselStillFades) {
+TEST(ContrastFlow, VesselFadesWithoutBloodFlow) {
   ContrastFlow flow = make_flow(make_patient());
   ASSERT_TRUE(flow.inject({-20, 0, 20}, 1.0, kIodine));
   run(flow, 1.0);
@@ -396,7 +396,7 @@ TEST(ContrastFlow, WithoutBloodFlowAVesselStillFades) {
   EXPECT_EQ(flow.totals().vessels_mg, 0.0);
 }
 
-TEST(ContrastFlow, OutsideTheBodyNothingIsInThePicture) {
+TEST(ContrastFlow, InjectionOutsideTheBodyIsSpilled) {
   ContrastFlow flow = make_flow(make_patient());
   ASSERT_TRUE(flow.inject({500, 0, 0}, 5.0, kIodine));
   run(flow, 1.0);
@@ -436,7 +436,7 @@ TEST(ContrastFlow, NeedsLabels) {
   EXPECT_NE(flow.error().text().find("labels"), std::string::npos);
 }
 
-TEST(ContrastTable, TakesTissuesOfNoListAsOther) {
+TEST(ContrastTable, TreatsUnlistedTissuesAsOther) {
   const ContrastTable table = shipped_table();
   ASSERT_GE(table.media.size(), 2u);
   EXPECT_EQ(table.media[table.medium_of("muscle")].place, ContrastPlace::kTissue);

@@ -78,7 +78,7 @@ TEST(DuctFill, FrontMovesByTheInjectedVolume) {
   EXPECT_LT(filling_at(fill, 2 * (front_mm + 15.0)), 0.01);
 }
 
-TEST(DuctFill, FillsTheBranchesOfAYAtTheSameTime) {
+TEST(DuctFill, FillsBothBranchesOfAYTogether) {
   const Y y;
   DuctFill fill(y.tree, without_mixing());
   const double rate = 0.1;
@@ -92,7 +92,7 @@ TEST(DuctFill, FillsTheBranchesOfAYAtTheSameTime) {
   EXPECT_LT(filling_at(fill, y.thin_end), 0.05);
 }
 
-TEST(DuctFill, GoesUpAndDownFromATipInTheMiddle) {
+TEST(DuctFill, FlowsBothWaysFromATipInTheMiddle) {
   const Y y;
   DuctFill fill(y.tree, without_mixing());
   const int tip = y.stem_end + 30;  // three quarters along the wide branch
@@ -233,7 +233,7 @@ Slab slab_at(const std::vector<IodinePiece>& pieces, double z) {
   return {mg / 3.0, mg > 0.0 ? radius / mg : 0.0};
 }
 
-TEST(DuctFill, FrontInAWideDuctFallsOffOverOneToTwoDiameters) {
+TEST(DuctFill, WideDuctFrontSpansOneToTwoDiameters) {
   DuctFill fill(wide_duct(), DuctParams{});
   inject(fill, 0, 1.0, 5.0);
   std::vector<IodinePiece> pieces;
@@ -250,7 +250,7 @@ TEST(DuctFill, FrontInAWideDuctFallsOffOverOneToTwoDiameters) {
   EXPECT_LE(at_10 - at_90, 28.0);
 }
 
-TEST(DuctFill, FrontInAWideDuctIsARoundNose) {
+TEST(DuctFill, WideDuctFrontHasARoundNose) {
   DuctFill fill(wide_duct(), DuctParams{});
   inject(fill, 0, 1.0, 10.0);
   std::vector<IodinePiece> pieces;
@@ -270,7 +270,7 @@ TEST(DuctFill, FrontInAWideDuctIsARoundNose) {
   }
 }
 
-TEST(DuctFill, AClosedEndIsHalfABallOfTheSameVolume) {
+TEST(DuctFill, ClosedEndIsAHemisphereOfTheSameVolume) {
   DuctFill fill(wide_duct(), DuctParams{});
   inject(fill, 40, 2.0, 20.0);
   std::vector<IodinePiece> pieces;

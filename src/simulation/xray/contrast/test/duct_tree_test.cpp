@@ -155,7 +155,7 @@ TEST(DuctTree, IsEmptyWithoutDucts) {
   EXPECT_EQ(make_duct_tree(*patient).find_cell({0, 0, 0}, 100.0), -1);
 }
 
-TEST(DuctTree, OfTheEmbeddedPatientIsObstructedAtTheTumour) {
+TEST(DuctTree, IsObstructedAtTheTumourInTheEmbeddedPatient) {
   const auto patient = anatomy::generate_phantom("ptcd-3", 1, {.voxel_mm = 2.5});
   ASSERT_TRUE(patient) << patient.error().text();
   const DuctTree tree = make_duct_tree(*patient);

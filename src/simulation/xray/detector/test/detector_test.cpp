@@ -31,7 +31,7 @@ double variance_of(const std::vector<float>& values) {
 /// Relative standard error of a variance of kDetectorCount normal numbers is sqrt(2 / kDetectorCount) = 0.55 %.
 constexpr double kVarianceTolerance = 0.03;
 
-TEST(QuantumNoise, HasTheVarianceOfThePhotonsAndKeepsTheMean) {
+TEST(QuantumNoise, HasPhotonVarianceAndKeepsTheMean) {
   for (const double open : {400.0, 1600.0, 25600.0})
     for (const double level : {1.0, 0.2}) {
       std::vector<float> image(kDetectorCount, static_cast<float>(level));
@@ -76,7 +76,7 @@ TEST(QuantumNoise, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(one, many);
 }
 
-TEST(QuantumNoise, LeavesDarknessDark) {
+TEST(QuantumNoise, KeepsZeroSignalAtZero) {
   std::vector<float> image(100, 0.0F);
   add_quantum_noise({500.0, 1.0}, 9, image);
   EXPECT_EQ(*std::max_element(image.begin(), image.end()), 0.0F);
@@ -112,7 +112,7 @@ TEST(ImageBlur, HasHalfTheModulationAtTheDetectorsFrequency) {
   EXPECT_NEAR(transfer(scintillator_sigma_mm(params) / pixel_mm, 1.0 / 8.0), 0.5, 0.01);
 }
 
-TEST(ImageBlur, KeepsEvenImagesUpToTheEdgeAndTheMean) {
+TEST(ImageBlur, KeepsUniformImagesAndTheMean) {
   for (const double sigma : {0.5, 3.0}) {
     std::vector<float> image(kDetectorCount, 0.7F);
     blur_image(image, kDetectorPixels, kDetectorPixels, sigma);
@@ -152,7 +152,7 @@ TEST(Lag, DecaysByTheSameShareEachFrame) {
   EXPECT_NEAR(image[2], expected * 0.04, 1e-7);
 }
 
-TEST(Lag, KeepsAnEvenSignalAndBeginsAgainAtAnotherSize) {
+TEST(Lag, KeepsAConstantSignalAndRestartsAtAnotherSize) {
   Lag lag;
   std::vector<float> image(4, 0.3F);
   for (int n = 0; n < 5; ++n) lag.apply(0.1, 1.0 / 15.0, image);
@@ -186,7 +186,7 @@ struct Even {
   }
 };
 
-TEST(Scatter, HasTheRatioOfAWideFieldBehindTheGrid) {
+TEST(Scatter, HasTheWideFieldRatioBehindTheGrid) {
   const DetectorParams params;
   const double expected = 0.02 * 0.15 * 20.0 * 0.15 / 0.70;
   EXPECT_NEAR(Even(20.0).middle(params), expected, 0.01 * expected);
@@ -194,7 +194,7 @@ TEST(Scatter, HasTheRatioOfAWideFieldBehindTheGrid) {
   EXPECT_EQ(Even(0.0).middle(params), 0.0);
 }
 
-TEST(Scatter, FallsWithTheFieldAsTheGaussianInside) {
+TEST(Scatter, ScalesWithTheGaussianWithinTheField) {
   const DetectorParams params;
   for (const double share : {0.1, 0.2, 0.4}) {
     const double inside = std::erf(0.5 * share * 600.0 / params.scatter_spread_mm / std::sqrt(2.0));
@@ -202,7 +202,7 @@ TEST(Scatter, FallsWithTheFieldAsTheGaussianInside) {
   }
 }
 
-TEST(Scatter, IsSmoothAndHalvedAtTheEdgeOfAnEvenField) {
+TEST(Scatter, IsSmoothAndHalvedAtTheEdge) {
   const DetectorParams params;
   const Even even(20.0);
   std::vector<float> signal(kDetectorCount, 0.0F);

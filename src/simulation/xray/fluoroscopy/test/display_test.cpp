@@ -39,7 +39,7 @@ std::vector<float> ramp() {
   return signal;
 }
 
-TEST(Display, ShowsAttenuationEvenlyAndDenseThingsDark) {
+TEST(Display, ShowsAttenuationLinearlyWithDenseDark) {
   const auto signal = ramp();
   const auto values = shown_values(signal, kPixels, kPixels, plain(), field_pixels(small_arm()));
   const GrayImage image = to_gray(values, kPixels, kPixels, {1.0F, 3.0F}, false, field_pixels(small_arm()));
@@ -73,7 +73,7 @@ TEST(Display, ShowsTheSignalIfLinear) {
   EXPECT_NEAR(image.pixels[at(9, 9)], 127.5, 1.0);
 }
 
-TEST(Display, FindsTheWindowInTheFieldWithoutDirectRadiation) {
+TEST(Display, FindsTheWindowExcludingDirectRadiation) {
   auto signal = ramp();
   const CArm arm = small_arm(0.5, 0.5);
   const FieldPixels field = field_pixels(arm);
@@ -117,7 +117,7 @@ TEST(Display, BlackensTheShutters) {
   EXPECT_EQ(lit, 32 * 16);
 }
 
-TEST(Display, EnhancesEdgesAndLeavesEvenPartsAlone) {
+TEST(Display, EnhancesEdgesAndKeepsUniformAreas) {
   std::vector<float> signal(kCount, std::exp(-1.0F));
   for (int row = 0; row < kPixels; ++row)
     for (int column = 32; column < kPixels; ++column) signal[at(column, row)] = std::exp(-2.0F);
@@ -130,7 +130,7 @@ TEST(Display, EnhancesEdgesAndLeavesEvenPartsAlone) {
   EXPECT_LT(values[at(31, 32)], 0.7);
 }
 
-TEST(Display, CompressesSlowDifferencesAndKeepsSmallThings) {
+TEST(Display, CompressesSlowDifferencesAndKeepsDetail) {
   auto signal = ramp();
   signal[at(40, 20)] *= std::exp(-0.2F);
   DisplaySettings settings = plain();
@@ -142,7 +142,7 @@ TEST(Display, CompressesSlowDifferencesAndKeepsSmallThings) {
   EXPECT_NEAR(after[at(40, 20)] - after[at(40, 21)], 0.2, 0.02);
 }
 
-TEST(Display, KeepsRibsBesideTheLungsEdgeAndGivesItNoHalo) {
+TEST(Display, KeepsRibsAtTheLungEdgeWithoutHalo) {
   constexpr int kBig = 256;
   std::vector<float> signal(static_cast<std::size_t>(kBig) * kBig);
   const auto place = [](int column, int row) { return static_cast<std::size_t>(row * kBig + column); };

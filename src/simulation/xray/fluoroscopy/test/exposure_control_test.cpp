@@ -91,7 +91,7 @@ TEST(ExposureControl, FollowsTheDoseMode) {
   EXPECT_NEAR(mas(DoseMode::kHigh) / mas(DoseMode::kNormal), 2.0, 1e-9);
 }
 
-TEST(ExposureControl, GivesSmallFieldsAndAcquisitionsMore) {
+TEST(ExposureControl, RaisesTheDoseForSmallFieldsAndAcquisitions) {
   CArm arm;
   const ExposureLimits limits;
   BeamCache beams;
@@ -115,7 +115,7 @@ TEST(ExposureControl, StaysWithinItsLimits) {
   EXPECT_LT(detector_ngy(exposure, 60.0, arm), 2.0 * limits.detector_ngy);
 }
 
-TEST(ExposureControl, NamesATubeThatCannotBe) {
+TEST(ExposureControl, NamesAnImpossibleTube) {
   BeamCache beams;
   Tube tube;
   tube.aluminium_mm = -1.0;

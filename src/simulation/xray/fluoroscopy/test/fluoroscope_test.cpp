@@ -123,7 +123,7 @@ std::shared_ptr<const XrayVolume> fat() {
   return XrayVolume::make(patient).value();
 }
 
-TEST(Fluoroscope, ATraceOfContrastAgentDoesNotShow) {
+TEST(Fluoroscope, HidesATraceOfContrastAgent) {
   FluoroscopyRequest request = small_request();
   request.arm.field_mm = 100.0;
   auto iodine = std::make_shared<Iodine>();
@@ -159,7 +159,7 @@ TEST(Fluoroscope, ShowsATubeOfSteelByBeersLaw) {
   EXPECT_LT(after.gray.pixels[pixel], before.gray.pixels[pixel]);
 }
 
-TEST(Fluoroscope, MakesTheSameSignalWithAndWithoutKeptMasses) {
+TEST(Fluoroscope, CachedMassesDoNotChangeTheSignal) {
   FluoroscopyRequest request = small_request();
   Fluoroscope used(testing::trunk());
   run(used, request, 0.2);
@@ -244,7 +244,7 @@ TEST(Fluoroscope, MovesThePatientButNotTheTools) {
   EXPECT_LT(signal[pixel_of(request.arm, {-30.0, 0, 10})], 0.8 * signal[pixel_of(request.arm, {-38.0, 0, 10})]);
 }
 
-TEST(Fluoroscope, IsDarkBehindTheShuttersAndNeedsLessAreaProduct) {
+TEST(Fluoroscope, ShuttersDarkenTheImageAndReduceTheAreaProduct) {
   Fluoroscope open(testing::trunk()), narrow(testing::trunk());
   FluoroscopyRequest request = small_request();
   const FluoroscopyFrame wide = run(open, request, 0.0);

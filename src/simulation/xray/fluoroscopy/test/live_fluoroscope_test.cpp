@@ -67,7 +67,7 @@ TEST(LiveFluoroscope, HoldsTheLastImageWithThePedalUp) {
             nullptr);
 }
 
-TEST(LiveFluoroscope, BeginsAnewWithAnotherPatient) {
+TEST(LiveFluoroscope, RestartsWithAnotherPatient) {
   LiveFluoroscope fluoroscope;
   fluoroscope.open(testing::trunk());
   FluoroscopyRequest request = pedal_request();
@@ -80,7 +80,7 @@ TEST(LiveFluoroscope, BeginsAnewWithAnotherPatient) {
   EXPECT_LE(first->dose.pulses, 5);
 }
 
-TEST(LiveFluoroscope, NamesAnImpossibleCArmAndGoesOn) {
+TEST(LiveFluoroscope, NamesAnImpossibleCArmAndRecovers) {
   LiveFluoroscope fluoroscope;
   fluoroscope.open(testing::trunk());
   FluoroscopyRequest bad = pedal_request();

@@ -20,7 +20,7 @@ TEST(CArmPresets, AreUsableAsShipped) {
   }
 }
 
-TEST(CArmPresets, NameTheKnownOnesForAnUnknownOne) {
+TEST(CArmPresets, UnknownNameListsTheKnownOnes) {
   const auto preset = load_c_arm(data_dir() / "carms.toml", "ceiling");
   ASSERT_FALSE(preset);
   EXPECT_EQ(preset.error().exit_status, 2);
@@ -28,7 +28,7 @@ TEST(CArmPresets, NameTheKnownOnesForAnUnknownOne) {
   EXPECT_EQ(load_c_arm(data_dir() / "carms.toml", "mobile")->name, "mobile");
 }
 
-TEST(CArmPresets, RefuseAnArmWhoseDetectorIsBeforeTheIsocentre) {
+TEST(CArmPresets, RefuseADetectorBeforeTheIsocentre) {
   std::ifstream shipped(data_dir() / "carms.toml");
   std::string text((std::istreambuf_iterator<char>(shipped)), {});
   const std::string good = "source_detector_mm = {value = 1000,";

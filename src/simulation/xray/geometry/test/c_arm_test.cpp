@@ -32,7 +32,7 @@ TEST(CArm, TurnsTowardsLeftAndHead) {
   EXPECT_NEAR((rays.column_P.normalized() - Vec3(0, 1, 0)).norm(), 0.0, kTiny);
 }
 
-TEST(CArm, HasAFlatSquareDetectorAcrossTheBeamForAllAngles) {
+TEST(CArm, DetectorIsSquareAndPerpendicularAtAllAngles) {
   Random random(3);
   for (int n = 0; n < 200; ++n) {
     const CArm arm{.lao_deg = random.uniform(-180.0, 180.0),
@@ -55,7 +55,7 @@ TEST(CArm, HasAFlatSquareDetectorAcrossTheBeamForAllAngles) {
   }
 }
 
-TEST(CArm, ProjectsPointsByTheRuleOfThree) {
+TEST(CArm, ProjectsPointsByPerspective) {
   const CArm arm{.source_isocentre_mm = 700.0, .source_detector_mm = 1050.0, .field_mm = 256.0, .pixels = 256};
   const XrayRays rays = rays_of(arm);
   // 10 mm to the patient's left in the plane of the isocentre: 15 mm on the detector; 20 mm up: 30 mm.

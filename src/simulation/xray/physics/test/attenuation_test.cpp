@@ -12,7 +12,7 @@ namespace {
 constexpr ElementShare kMuscle[] = {{1, 0.102},  {6, 0.143},  {7, 0.034},  {8, 0.710}, {11, 0.001},
                                     {15, 0.002}, {16, 0.003}, {17, 0.001}, {19, 0.004}};
 
-TEST(Attenuation, IsTheTabulatedOneAt60Kev) {
+TEST(Attenuation, MatchesTheTableAt60Kev) {
   // NIST's tables (Hubbell and Seltzer); 0.5 % is their stated spread between editions.
   EXPECT_NEAR(attenuation_cm2_per_g(composition_of(Basis::kWater), 60.0), 0.2059, 0.001);
   EXPECT_NEAR(attenuation_cm2_per_g(kMuscle, 60.0), 0.2048, 0.001);
@@ -20,12 +20,12 @@ TEST(Attenuation, IsTheTabulatedOneAt60Kev) {
   EXPECT_NEAR(attenuation_cm2_per_g(composition_of(Basis::kIodine), 60.0), 7.577, 0.04);
 }
 
-TEST(Attenuation, HalvesABeamOf60KevIn33MmOfWater) {
+TEST(Attenuation, Halves60KevIn34MmOfWater) {
   const double per_mm = 0.1 * attenuation_cm2_per_g(composition_of(Basis::kWater), 60.0);
   EXPECT_NEAR(std::numbers::ln2 / per_mm, 33.66, 0.01 * 33.66);
 }
 
-TEST(Attenuation, OfIodineRisesAtItsEdge) {
+TEST(Attenuation, RisesAtTheIodineEdge) {
   const auto iodine = composition_of(Basis::kIodine);
   EXPECT_GT(attenuation_cm2_per_g(iodine, 33.3), 4.0 * attenuation_cm2_per_g(iodine, 33.0));
 }
@@ -41,7 +41,7 @@ TEST(AirEnergyAbsorption, FollowsItsTableSmoothly) {
     EXPECT_LT(air_energy_absorption_cm2_per_g(kev), air_energy_absorption_cm2_per_g(kev - 1.0)) << kev;
 }
 
-TEST(Attenuation, HasWholeMaterials) {
+TEST(Attenuation, CoversEveryMaterial) {
   for (const Basis basis : {Basis::kWater, Basis::kBone, Basis::kIodine, Basis::kSteel}) {
     double sum = 0.0;
     for (const ElementShare& element : composition_of(basis)) sum += element.share;

@@ -44,12 +44,12 @@ TEST(Beam, HardensInWater) {
   EXPECT_NEAR(beam.signal({}), 1.0, 1e-6);
 }
 
-TEST(Beam, IsTransparentEnoughBehind300MmOfWater) {
+TEST(Beam, PenetratesWaterOf300Mm) {
   // 60 keV: exp(-0.2059 * 30) = 2.1e-3, not a hundred times more.
   EXPECT_NEAR(Beam::make(*one_energy(60.0))->signal({30.0, 0, 0, 0}), std::exp(-0.2059 * 30.0), 0.01 * 2.1e-3);
 }
 
-TEST(Beam, ComputesImagesAsSinglePixels) {
+TEST(Beam, ImagesMatchSinglePixels) {
   const Beam beam = tube_beam();
   MassImage masses{.columns = 67, .rows = 31, .g_per_cm2 = {}};  // no multiple of a vector
   Random random(7);
@@ -72,7 +72,7 @@ TEST(Beam, ComputesImagesAsSinglePixels) {
   EXPECT_EQ(signal, again);
 }
 
-TEST(Beam, TakesAnEmptyImageAsNothing) {
+TEST(Beam, TreatsAnEmptyImageAsNoAttenuation) {
   MassImage masses{.columns = 5, .rows = 3, .g_per_cm2 = {}};
   std::vector<float> signal(15, 0.0F);
   tube_beam().signals(masses, signal);

@@ -23,7 +23,7 @@ TEST(BasisShares, ReproduceEachTissueWithinOnePercent) {
   }
 }
 
-TEST(BasisShares, OfTheBasisMaterialsAreThemselves) {
+TEST(BasisShares, AreUnitForTheBasisMaterials) {
   const BasisShares water = fit_basis(composition_of(Basis::kWater)), bone = fit_basis(composition_of(Basis::kBone));
   EXPECT_NEAR(water.water, 1.0, 1e-9);
   EXPECT_NEAR(water.bone, 0.0, 1e-9);
@@ -31,7 +31,7 @@ TEST(BasisShares, OfTheBasisMaterialsAreThemselves) {
   EXPECT_NEAR(bone.bone, 1.0, 1e-9);
 }
 
-TEST(BasisShares, CannotStandForIodine) {
+TEST(BasisShares, CannotReproduceIodine) {
   EXPECT_GT(fit_basis(composition_of(Basis::kIodine)).worst_error, 0.1);  // its edge
 }
 
@@ -58,7 +58,7 @@ TEST(XrayMaterials, KeepTheAttenuationOfTheCt) {
     }
 }
 
-TEST(XrayMaterials, MakeDenseVoxelsOfBoneBone) {
+TEST(XrayMaterials, TreatDenseBoneVoxelsAsBone) {
   const XrayMaterials materials = shipped();
   const BasisDensity cortical = materials.curve_of("bone").at(1500.0), vessel = materials.curve_of("vessel").at(250.0);
   EXPECT_GT(cortical.bone, 1.7);

@@ -21,7 +21,7 @@ double mean_kev(const Spectrum& spectrum) {
          photons;
 }
 
-TEST(TubeSpectrum, HasTheMeasuredHalfValueLayers) {
+TEST(TubeSpectrum, MatchesMeasuredHalfValueLayers) {
   // PTB's tube (doi 10.7795/110.20190315B): 2.5 mm of aluminium, then more behind it. Its anode of 20 degrees and the
   // 12 degrees here differ by up to 3 % of the half-value layer.
   struct Quality {
@@ -33,7 +33,7 @@ TEST(TubeSpectrum, HasTheMeasuredHalfValueLayers) {
     EXPECT_NEAR(half_value_layer_mm(spectrum_of(q.kv, q.aluminium_mm)) / q.half_value_layer_mm, 1.0, 0.04) << q.kv;
 }
 
-TEST(TubeSpectrum, ReachesTheStandardQualitiesWithAUsualFilter) {
+TEST(TubeSpectrum, MatchesStandardQualitiesWithAUsualFilter) {
   // IEC 61267, RQR 5, 6, 8, 9: a laboratory adjusts the filter until the half-value layer is this.
   struct Quality {
     double kv, half_value_layer_mm;
@@ -44,7 +44,7 @@ TEST(TubeSpectrum, ReachesTheStandardQualitiesWithAUsualFilter) {
   }
 }
 
-TEST(TubeSpectrum, HasTheFluenceOfTheStandardQualities) {
+TEST(TubeSpectrum, MatchesTheFluenceOfStandardQualities) {
   // IEC 62220-1, table 2: photons per mm² and µGy of RQA 5, 7, 9, which have these half-value layers.
   struct Quality {
     double kv, half_value_layer_mm, photons;
@@ -65,7 +65,7 @@ TEST(TubeSpectrum, HasTheFluenceOfTheStandardQualities) {
   }
 }
 
-TEST(TubeSpectrum, HasTheOutputOfATube) {
+TEST(TubeSpectrum, MatchesTheOutputOfATube) {
   // Measured tubes with 2.5 to 3 mm of aluminium at 1 m and 80 kV: 0.06 to 0.1 mGy/mAs. About the square of the
   // voltage.
   const double at_80 = air_kerma_mgy(spectrum_of(80.0, 2.5));
@@ -76,7 +76,7 @@ TEST(TubeSpectrum, HasTheOutputOfATube) {
   EXPECT_LT(exponent, 2.5);
 }
 
-TEST(TubeSpectrum, EndsAtTheVoltageAndHasKLinesAboveTheEdge) {
+TEST(TubeSpectrum, EndsAtTheTubeVoltageWithKLinesAboveTheEdge) {
   const Spectrum low = spectrum_of(69.0, 2.5), high = spectrum_of(100.0, 2.5);
   EXPECT_LT(low.energy_kev.back(), 69.0);
   EXPECT_LT(high.energy_kev.back(), 100.0);
@@ -94,7 +94,7 @@ TEST(TubeSpectrum, HardensByFilters) {
   EXPECT_LT(air_kerma_mgy(spectrum_of(80.0, 2.5, 0.2)), 0.6 * air_kerma_mgy(spectrum_of(80.0, 2.5)));
 }
 
-TEST(OneEnergy, HasTheHalfValueLayerOfItsAttenuation) {
+TEST(OneEnergy, HalfValueLayerMatchesItsAttenuation) {
   const double expected = std::numbers::ln2 / (0.1 * kAluminium_g_per_cm3 * attenuation_cm2_per_g(aluminium(), 60.0));
   EXPECT_NEAR(half_value_layer_mm(*one_energy(60.0)), expected, 1e-6 * expected);
 }

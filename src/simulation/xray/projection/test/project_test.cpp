@@ -70,7 +70,7 @@ double slow_integral_cm(const volume::FloatGrid& grid, const XrayRays& rays, int
   return 0.1 * sum * along.norm() / count;
 }
 
-TEST(Project, GivesTheChordsOfASphereFromAllSides) {
+TEST(Project, MatchesSphereChordsFromAllSides) {
   const volume::FloatGrid grid = sphere(cube(96, 1.0));
   Random random(5);
   for (int n = 0; n < 12; ++n) {
@@ -95,7 +95,7 @@ TEST(Project, GivesTheChordsOfASphereFromAllSides) {
   }
 }
 
-TEST(Project, AgreesWithDenseSamplingOfRoughVoxels) {
+TEST(Project, AgreesWithDenseSamplingOfRandomVoxels) {
   volume::GridGeometry g = cube(40, 1.5);
   g.size = {40, 33, 27};
   g.spacing_mm = {1.5, 1.2, 2.0};
@@ -119,7 +119,7 @@ TEST(Project, AgreesWithDenseSamplingOfRoughVoxels) {
   }
 }
 
-TEST(Project, PutsPointsWhereTheRaysGo) {
+TEST(Project, ProjectsPointsAlongTheirRays) {
   // Balls of 2 mm on a known grid: the centroid of each shadow against the projected centre.
   volume::GridGeometry g = cube(12, 0.8);
   for (const auto& [lao, cranial] : {std::pair{0.0, 0.0}, {30.0, 20.0}, {-75.0, 10.0}, {90.0, -30.0}}) {
@@ -180,7 +180,7 @@ TEST(Project, MovesWithThePatient) {
     }
 }
 
-TEST(Project, IsZeroBesideTheVolumeAndForAnEmptyOne) {
+TEST(Project, IsZeroOutsideTheVolumeAndForAnEmptyOne) {
   const volume::FloatGrid grid = sphere(cube(96, 1.0));
   XrayRays rays = rays_of({.field_mm = 100.0, .pixels = 32});
   rays.source_P.x() += 400.0;
@@ -212,7 +212,7 @@ TEST(Project, SurvivesASourceInsideTheVolume) {
   }
 }
 
-TEST(Project, CoversSteepRaysOfAWideBeamWithoutSeams) {
+TEST(Project, HasNoSeamsForSteepRays) {
   const volume::FloatGrid grid = sphere(cube(96, 1.0));
   const CArm arm{.lao_deg = 45.0,
                  .cranial_deg = 35.0,

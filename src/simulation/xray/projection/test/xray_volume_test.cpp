@@ -59,7 +59,7 @@ double cylinder_chord_cm(const XrayRays& rays, int column, int row) {
   return 0.2 * std::sqrt(std::max(0.0, kRadius_mm * kRadius_mm - offset * offset)) / across;
 }
 
-TEST(XrayVolume, ProjectsAWaterCylinderAsComputed) {
+TEST(XrayVolume, WaterCylinderMatchesTheClosedForm) {
   const Beam one = *Beam::make(*one_energy(60.0)), tube = *Beam::make(*tube_spectrum({.kv = 80.0}));
   for (const double lao : {0.0, 45.0, 90.0}) {
     const View view = look(cylinder(), {.lao_deg = lao, .field_mm = 260.0, .pixels = 65});
@@ -152,7 +152,7 @@ TEST(XrayVolume, ProjectsATubeOfIodineInWater) {
   EXPECT_NEAR(-std::log(static_cast<double>(signal[32 * 65 + 32])), poly, 0.01 * poly);
 }
 
-TEST(XrayVolume, LeavesOutWhatLiesOutsideTheBody) {
+TEST(XrayVolume, ExcludesObjectsOutsideTheBody) {
   auto patient = std::make_shared<anatomy::VirtualPatient>();
   patient->ct = air(40, 5.0);
   patient->skin_distance_mm = volume::FloatGrid(patient->ct.geometry, 20.0F);

@@ -36,7 +36,7 @@ double way_length_mm(const std::vector<Vec3>& points_P) {
 const Vec3 kDownX = Vec3(0.3, -1.0, 0.0).normalized();  // points along the trunk
 const Vec3 kUpX = Vec3(-0.3, -1.0, 0.0).normalized();
 
-TEST(GuideWire, GoesTheStraightestWayToTheSideToWhichTheNeedlePoints) {
+TEST(GuideWire, FollowsTheStraightestBranchInTheNeedleDirection) {
   const auto way_P = guide_wire_way(forked(), {15, 0, 0}, kDownX, 40.0);
   EXPECT_NEAR(way_length_mm(way_P), 40.0, 1e-9);
   EXPECT_NEAR((way_P.back() - Vec3(55, 0, 0)).norm(), 0.0, 1e-9);
@@ -44,14 +44,14 @@ TEST(GuideWire, GoesTheStraightestWayToTheSideToWhichTheNeedlePoints) {
   EXPECT_NEAR((back_P.back() - Vec3(3, 0, 0)).norm(), 0.0, 1e-9);
 }
 
-TEST(GuideWire, TurnsFromABranchIntoTheTrunkOrTheOtherBranch) {
+TEST(GuideWire, TurnsFromABranchIntoTheTrunkOrSecondBranch) {
   const auto way_P = guide_wire_way(forked(), {30, 20, 0}, Vec3(0, -1, 0), 35.0);  // towards the fork
   EXPECT_NEAR(way_length_mm(way_P), 35.0, 1e-9);
   EXPECT_NEAR(way_P.back().y(), 0.0, 1e-9) << "both ways on are equally bent";
   EXPECT_NEAR(std::abs(way_P.back().x() - 30.0), 15.0, 1e-9);
 }
 
-TEST(GuideWire, EndsWhereTheDuctEndsOrIsClosed) {
+TEST(GuideWire, StopsAtTheDuctEndOrAnObstruction) {
   EXPECT_NEAR(way_length_mm(guide_wire_way(forked(), {15, 0, 0}, kDownX, 200.0)), 45.0, 1e-9);
   EXPECT_NEAR(way_length_mm(guide_wire_way(forked(), {15, 0, 0}, kUpX, 200.0)), 15.0, 1e-9);
   DuctTree tree = forked();
@@ -68,7 +68,7 @@ TEST(GuideWire, BucklesOutsideOfTheDucts) {
   EXPECT_EQ(guide_wire_way(DuctTree{}, {0, 0, 0}, Vec3(0, 0, 1), 50.0).size(), 2u);
 }
 
-TEST(GuideWire, OfNoLengthOrPlaceIsAPoint) {
+TEST(GuideWire, IsAPointWithoutValidLengthOrPosition) {
   EXPECT_EQ(guide_wire_way(forked(), {15, 0, 0}, kDownX, 0.0).size(), 1u);
   EXPECT_EQ(guide_wire_way(forked(), {15, 0, 0}, kDownX, -3.0).size(), 1u);
   EXPECT_EQ(guide_wire_way(forked(), {15, 0, 0}, kDownX, std::nan("")).size(), 1u);

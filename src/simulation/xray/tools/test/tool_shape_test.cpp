@@ -74,7 +74,7 @@ TEST(ToolShape, KeepsTheMassOfWiresThinnerThanAPixel) {
       }
 }
 
-TEST(ToolShape, PutsAWireWhereItsAxisProjects) {
+TEST(ToolShape, ProjectsAWireAlongItsAxis) {
   const XrayRays rays = rays_over_origin(0.6);
   for (const double x_mm : {-3.17, 0.0, 0.05, 0.21, 7.93})
     for (const double radius_mm : {0.1, 0.5}) {
@@ -90,7 +90,7 @@ TEST(ToolShape, PutsAWireWhereItsAxisProjects) {
     }
 }
 
-TEST(ToolShape, HasTheChordOfACylinderInTheMiddleOfAWideOne) {
+TEST(ToolShape, MatchesTheChordThroughAWideCylinder) {
   const XrayRays rays = rays_over_origin(0.1, 129);
   const auto image = steel_of(wire({{0, -20, 0}, {0, 20, 0}}, 3.0), rays);
   const double chord_cm = 0.6;
@@ -102,7 +102,7 @@ TEST(ToolShape, HasTheChordOfACylinderInTheMiddleOfAWideOne) {
               5e-3);
 }
 
-TEST(ToolShape, IsATubeAroundItsBoreAndFillsIt) {
+TEST(ToolShape, ProjectsATubeWithAFilledBore) {
   const XrayRays rays = rays_over_origin(0.1, 129);
   ToolShape tube = wire({{0, -20, 0}, {0, 20, 0}}, 2.0);
   tube.inner_radius_mm = 1.5;
@@ -114,7 +114,7 @@ TEST(ToolShape, IsATubeAroundItsBoreAndFillsIt) {
   EXPECT_TRUE(masses.of(Basis::kBone).empty());
 }
 
-TEST(ToolShape, KeepsLengthAndMassSeenEndOn) {
+TEST(ToolShape, KeepsLengthAndMassWhenViewedEndOn) {
   const XrayRays rays = rays_over_origin(0.3);
   for (const double slope : {0.0, 0.02, 0.1, 0.19, 0.21}) {
     const Vec3 along = Vec3(slope, 0.3 * slope, 1.0).normalized();
@@ -127,7 +127,7 @@ TEST(ToolShape, KeepsLengthAndMassSeenEndOn) {
               0.01);
 }
 
-TEST(ToolShape, NeitherDoublesNorMissesJointsOfABentLine) {
+TEST(ToolShape, CountsJointsOfABentLineOnce) {
   const XrayRays rays = rays_over_origin(0.3, 256);
   // An arc of 60 mm length, once in few and once in many pieces: mass of the axis' length.
   for (const int pieces : {6, 60, 600}) {
@@ -147,7 +147,7 @@ TEST(ToolShape, NeitherDoublesNorMissesJointsOfABentLine) {
   }
 }
 
-TEST(ToolShape, DoesNotChangeWithPointsOnAStraightLine) {
+TEST(ToolShape, IsUnchangedByPointsOnAStraightLine) {
   const XrayRays rays = rays_over_origin(0.4);
   const auto whole = steel_of(wire({{-8, -9, 3}, {9, 8, -4}}, 0.4), rays);
   std::vector<Vec3> many;
@@ -166,7 +166,7 @@ TEST(ToolShape, TouchesOnlyPixelsNearTheShadow) {
     }
 }
 
-TEST(ToolShape, IgnoresWhatIsBehindTheSourceOrNoPlace) {
+TEST(ToolShape, IgnoresPointsBehindTheSourceOrNonFinite) {
   const XrayRays rays = rays_over_origin(0.4);
   const auto behind = steel_of(wire({{0, 0, -900}, {0, 10, -900}}, 0.4), rays);
   EXPECT_EQ(*std::max_element(behind.begin(), behind.end()), 0.0F);

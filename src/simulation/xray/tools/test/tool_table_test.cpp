@@ -59,7 +59,7 @@ TEST(ToolTable, CurvePassesThroughItsPoints) {
   for (const Vec3& p_P : straight.line_P) EXPECT_NEAR(std::hypot(p_P.x() - 1.0, p_P.y() - 2.0), 0.0, 1e-12);
 }
 
-TEST(ToolTable, OnePointIsABead) {
+TEST(ToolTable, TreatsOnePointAsABead) {
   const ToolShape bead = tool_along(guide_wire(), std::array{Vec3(1, 2, 3)});
   ASSERT_EQ(bead.line_P.size(), 2U);
   EXPECT_NEAR((bead.line_P[1] - bead.line_P[0]).norm(), 2.0 * bead.outer_radius_mm, 1e-12);

@@ -30,7 +30,7 @@ telemetry::TickSample at_target() {
   return sample;
 }
 
-TEST(GunShot, TakesACoreWhereTheNotchWas) {
+TEST(GunShot, TakesACoreAtTheNotch) {
   const cases::Case& the_case = liver().the_case;
   const GunShot shot = make_gun_shot(the_case, at_target());
   EXPECT_EQ(shot.throw_mm, the_case.needle.throw_mm);
@@ -45,7 +45,7 @@ TEST(GunShot, TakesACoreWhereTheNotchWas) {
   EXPECT_NE(shot_words(shot).find("target tissue"), std::string::npos) << shot_words(shot);
 }
 
-TEST(GunShot, OutsideOfTheBodyTakesNothing) {
+TEST(GunShot, TakesNothingOutsideTheBody) {
   telemetry::TickSample outside = at_target();
   outside.depth_mm = 0.0;
   const GunShot shot = make_gun_shot(liver().the_case, outside);
@@ -53,7 +53,7 @@ TEST(GunShot, OutsideOfTheBodyTakesNothing) {
   EXPECT_NE(shot_words(shot).find("outside the body"), std::string::npos);
 }
 
-TEST(GunShot, StyletGoesFirstThenTheCannulaAndBothStay) {
+TEST(GunShot, ThrowsTheStyletThenTheCannula) {
   const GunShot shot = make_gun_shot(liver().the_case, at_target());
   EXPECT_EQ(throw_at(shot, 0.0, shot.depth_mm).stylet_mm, 0.0);
   const GunThrow half = throw_at(shot, 0.5 * kStyletMoves_s, shot.depth_mm);
@@ -67,7 +67,7 @@ TEST(GunShot, StyletGoesFirstThenTheCannulaAndBothStay) {
   EXPECT_EQ(end.cannula_mm, shot.throw_mm);
 }
 
-TEST(GunShot, TheNeedleIsOutWhereItIsFeltToBeOut) {
+TEST(GunShot, WithdrawalRetractsTheThrow) {
   GunShot shot = make_gun_shot(liver().the_case, at_target());
   EXPECT_NEAR(throw_at(shot, 60.0, 0.5 * shot.depth_mm).cannula_mm, 0.5 * shot.throw_mm, 1e-9);
   EXPECT_EQ(throw_at(shot, 60.0, 0.0).cannula_mm, 0.0);
@@ -76,7 +76,7 @@ TEST(GunShot, TheNeedleIsOutWhereItIsFeltToBeOut) {
   EXPECT_EQ(throw_at(shot, 60.0, 0.0).stylet_mm, 0.0);
 }
 
-TEST(GunShot, AThrownShaftIsLongerByTheThrowAlongItsEnd) {
+TEST(GunShot, ThrownShaftIsExtendedAlongItsEnd) {
   const std::vector<Vec3> shaft_P{Vec3(0, 0, 0), Vec3(0, 0, 10), Vec3(3, 0, 14)};
   const std::vector<Vec3> thrown_P = thrown_shaft(shaft_P, 5.0);
   ASSERT_EQ(thrown_P.size(), 4u);
@@ -85,7 +85,7 @@ TEST(GunShot, AThrownShaftIsLongerByTheThrowAlongItsEnd) {
   EXPECT_TRUE(thrown_shaft({}, 5.0).empty());
 }
 
-TEST(GunShot, TheHintGoesOnToTheNextCoreAndToWithdrawing) {
+TEST(GunShot, HintAdvancesToTheNextCoreAndToWithdrawal) {
   telemetry::TickSample sample = at_target();
   EXPECT_NE(guide_puncture(liver().the_case, sample).find("fire"), std::string::npos);
   const cases::Case& the_case = liver().the_case;

@@ -22,7 +22,7 @@ double length_of(const std::vector<Vec3>& points) {
 
 const Pose kHeld = needle_pose({10.0, 20.0, 30.0}, Vec3(0.3, 1.0, -0.2).normalized());
 
-TEST(NeedleShaft, OutsideIsWhatIsLeftOfItsLength) {
+TEST(NeedleShaft, OutsidePartIsTheRestOfItsLength) {
   const std::vector<Vec3> shaft_P{Vec3(0, 0, 0), Vec3(0, 0, 100), Vec3(0, 30, 140)};
   EXPECT_EQ(shaft_outside(shaft_P, 0.0), shaft_P);
   const std::vector<Vec3> bent_P = shaft_outside(shaft_P, 25.0);
@@ -34,14 +34,14 @@ TEST(NeedleShaft, OutsideIsWhatIsLeftOfItsLength) {
   EXPECT_TRUE(shaft_outside(shaft_P, 150.0).empty());
 }
 
-TEST(NeedleShaft, IsStraightFromHubToTipWhileNothingBendsIt) {
+TEST(NeedleShaft, IsStraightFromHubToTipWhenUnbent) {
   const std::vector<Vec3> shaft = needle_shaft(sample_at(kHeld), {}, kLength_mm);
   ASSERT_EQ(shaft.size(), 2u);
   EXPECT_EQ(shaft.back(), kHeld.p());
   EXPECT_NEAR((shaft.front() - (kHeld.p() - kLength_mm * kHeld.R().col(2))).norm(), 0.0, 1e-9);
 }
 
-TEST(NeedleShaft, KeepsItsLengthWhenTheTipLagsBehindTheHand) {
+TEST(NeedleShaft, KeepsItsLengthWhenTheTipLags) {
   telemetry::TickSample sample = sample_at(kHeld);
   sample.tip_mm -= 5.0 * sample.axis;
   const std::vector<Vec3> shaft = needle_shaft(sample, {}, kLength_mm);
@@ -49,7 +49,7 @@ TEST(NeedleShaft, KeepsItsLengthWhenTheTipLagsBehindTheHand) {
   EXPECT_EQ(shaft.back(), sample.tip_mm);
 }
 
-TEST(NeedleShaft, HasTheShapeOfTheTickAndItsTip) {
+TEST(NeedleShaft, MatchesTheShapeAndTipOfTheTick) {
   telemetry::TickSample sample = sample_at(kHeld);
   const Vec3 aside = kHeld.R().col(0);
   sample.tip_mm += 6.0 * aside - 3.0 * sample.axis;

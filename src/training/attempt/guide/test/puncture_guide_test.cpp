@@ -36,7 +36,7 @@ class PunctureGuide : public ::testing::Test {
   static inline cases::Case the_case;
 };
 
-TEST_F(PunctureGuide, SaysAdvanceOnThePathAndFireAtItsEnd) {
+TEST_F(PunctureGuide, AdvisesAdvancingOnThePathAndFiringAtItsEnd) {
   EXPECT_TRUE(says(on_path(-15.0), "advance")) << guide_puncture(the_case, on_path(-15.0));
   const double length_mm = the_case.plan.line_P.length_mm();
   EXPECT_TRUE(says(on_path(length_mm - 12.0), "12 mm to the target"))
@@ -45,7 +45,7 @@ TEST_F(PunctureGuide, SaysAdvanceOnThePathAndFireAtItsEnd) {
   EXPECT_TRUE(says(on_path(length_mm + 4.0), "4.0 mm too deep")) << guide_puncture(the_case, on_path(length_mm + 4.0));
 }
 
-TEST_F(PunctureGuide, SaysWhereTheEntryIs) {
+TEST_F(PunctureGuide, StatesTheDirectionOfTheEntry) {
   telemetry::TickSample sample = on_path(-15.0);
   sample.tip_mm += 40.0 * headward();
   EXPECT_TRUE(says(sample, "towards the feet")) << guide_puncture(the_case, sample);
@@ -61,7 +61,7 @@ TEST_F(PunctureGuide, SaysWhereTheEntryIs) {
   EXPECT_TRUE(says(sample, "to the patient's right")) << guide_puncture(the_case, sample);
 }
 
-TEST_F(PunctureGuide, FollowingItsWordsBringsTheNeedleBack) {
+TEST_F(PunctureGuide, AdviceCorrectsTheNeedle) {
   const Vec3 axis = the_case.plan.line_P.direction();
   const double angle = 6.0 * 3.14159265 / 180.0;
   telemetry::TickSample outside = on_path(-15.0);
@@ -77,7 +77,7 @@ TEST_F(PunctureGuide, FollowingItsWordsBringsTheNeedleBack) {
   EXPECT_TRUE(says(inside, "3.0 mm from the path: tilt the tip towards the feet")) << guide_puncture(the_case, inside);
 }
 
-TEST_F(PunctureGuide, WarnsOfBoneAheadBeforeAllElse) {
+TEST_F(PunctureGuide, WarnsOfBoneAheadFirst) {
   const volume::LabelGrid& labels = the_case.patient->labels;
   std::optional<Vec3> bone_P;
   for (std::size_t n = 0; n < labels.voxels.size() && !bone_P; ++n) {
@@ -113,7 +113,7 @@ cases::Case with_bone_behind(const cases::Case& the_case, double behind_mm) {
   return changed;
 }
 
-TEST_F(PunctureGuide, WarnsOnlyOfWhatIsOnTheWayToTheTarget) {
+TEST_F(PunctureGuide, WarnsOnlyOfStructuresBeforeTheTarget) {
   const cases::Case changed = with_bone_behind(the_case, 6.0);
   const double length_mm = the_case.plan.line_P.length_mm();
   EXPECT_EQ(guide_puncture(changed, on_path(length_mm - 3.0)).find("Bone"), std::string::npos) << "behind the target";
@@ -126,7 +126,7 @@ TEST_F(PunctureGuide, WarnsOnlyOfWhatIsOnTheWayToTheTarget) {
   EXPECT_NE(guide_puncture(before, on_path(length_mm - 20.0)).find("Bone"), std::string::npos);
 }
 
-TEST_F(PunctureGuide, SaysAtTheTargetOnlyInIt) {
+TEST_F(PunctureGuide, ReportsTheTargetOnlyInsideIt) {
   const double length_mm = the_case.plan.line_P.length_mm();
   cases::Case changed = with_bone_behind(the_case, 30.0);
   changed.is_parenchymal = false;
@@ -141,7 +141,7 @@ TEST_F(PunctureGuide, SaysAtTheTargetOnlyInIt) {
   EXPECT_EQ(guide_puncture(changed, pressing).find("At the target"), std::string::npos) << "the wall did not give way";
 }
 
-TEST_F(PunctureGuide, KnowsWhatAShotBroughtAndWhenAllIsDone) {
+TEST_F(PunctureGuide, StatesTheResultOfAShotAndCompletion) {
   GunShot air;
   EXPECT_EQ(guide_puncture(the_case, on_path(-5.0), {0, false, &air}),
             "No core, the gun was fired outside the body: load the gun for the next one");
@@ -157,7 +157,7 @@ TEST_F(PunctureGuide, KnowsWhatAShotBroughtAndWhenAllIsDone) {
             "Position confirmed: hold still for the next step");
 }
 
-TEST_F(PunctureGuide, HasNothingToSayOfWhatIsNoNumber) {
+TEST_F(PunctureGuide, IsSilentForNonFinitePoses) {
   telemetry::TickSample sample = on_path(5.0);
   sample.tip_mm.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(guide_puncture(the_case, sample), "");

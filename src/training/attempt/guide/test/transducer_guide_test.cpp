@@ -43,21 +43,21 @@ std::string advice(const Vec3& target_T, double contact_n = 1.0, bool has_rib = 
   return guide_transducer(with_rib(has_rib), from_the_front() * target_T, from_the_front(), contact_n, fan());
 }
 
-TEST(TransducerGuide, AsksForContactFirst) {
+TEST(TransducerGuide, AdvisesSkinContactFirst) {
   EXPECT_NE(advice({0.0, 50.0, 0.0}, 0.0).find("touch the skin"), std::string::npos);
   EXPECT_NE(advice({0.0, 50.0, 0.0}, std::nan("")).find("touch the skin"), std::string::npos);
 }
 
-TEST(TransducerGuide, SaysOnWhichSideAFarTargetLies) {
+TEST(TransducerGuide, StatesTheSideOfAFarTarget) {
   EXPECT_EQ(advice({-80.0, 40.0, 0.0}), "The target is 80 mm to the patient's right: move the transducer there");
   EXPECT_EQ(advice({0.0, 40.0, 60.0}), "The target is 60 mm towards the head: move the transducer there");
 }
 
-TEST(TransducerGuide, SaysHowFarThePlaneIsBesideTheTarget) {
+TEST(TransducerGuide, StatesThePlaneOffsetFromTheTarget) {
   EXPECT_EQ(advice({5.0, 60.0, -8.0}), "The image passes 8 mm beside the target: move or tilt it towards the feet");
 }
 
-TEST(TransducerGuide, SaysWhichEdgeOfTheImageHidesTheTarget) {
+TEST(TransducerGuide, StatesWhichImageEdgeHidesTheTarget) {
   EXPECT_NE(advice({0.0, 130.0, 0.0}).find("increase the depth"), std::string::npos);
   metrics::ImagePlane narrow = fan();
   narrow.field_of_view_rad = 0.3;
@@ -66,21 +66,21 @@ TEST(TransducerGuide, SaysWhichEdgeOfTheImageHidesTheTarget) {
   EXPECT_NE(beside.find("to the patient's left"), std::string::npos) << beside;
 }
 
-TEST(TransducerGuide, SaysHoldStillOnceTheTargetIsShown) {
+TEST(TransducerGuide, AdvisesHoldingStillAtTheTarget) {
   EXPECT_EQ(advice({5.0, 60.0, 1.0}), "The target is in the image: hold still");
 }
 
-TEST(TransducerGuide, SaysThatARibHidesTheTarget) {
+TEST(TransducerGuide, ReportsARibThatHidesTheTarget) {
   EXPECT_EQ(advice({0.0, 60.0, 0.0}, 1.0, true), "The right rib 9 hides the target: look beside it");
   EXPECT_NE(advice({25.0, 60.0, 0.0}, 1.0, true).find("hold still"), std::string::npos) << "beside the rib";
   EXPECT_NE(advice({0.0, 15.0, 0.0}, 1.0, true).find("hold still"), std::string::npos) << "before the rib";
 }
 
-TEST(TransducerGuide, SaysNothingOfPosesThatAreNotFinite) {
+TEST(TransducerGuide, IsSilentForNonFinitePoses) {
   EXPECT_TRUE(advice({std::nan(""), 0.0, 0.0}).empty());
 }
 
-TEST(TransducerGuide, KnowsTheStepsOfTheTransducer) {
+TEST(TransducerGuide, RecognisesTransducerSteps) {
   tasks::Phase phase;
   phase.done = {{tasks::ConditionKind::kTipOnSkin, 0.0, {}}};
   EXPECT_FALSE(is_step_of_transducer(phase));

@@ -12,7 +12,7 @@ AttemptView view_in(AttemptPhase phase) {
   return view;
 }
 
-TEST(AttemptView, SaysSoWhenNobodyHasLookedAfterTheNeedle) {
+TEST(AttemptView, ReportsALostServerWhenTheViewIsTooOld) {
   for (const AttemptPhase phase : {AttemptPhase::kReady, AttemptPhase::kInBody}) {
     const AttemptView old = aged(view_in(phase), 0.3);
     EXPECT_EQ(old.phase, AttemptPhase::kServerLost);
@@ -23,7 +23,7 @@ TEST(AttemptView, SaysSoWhenNobodyHasLookedAfterTheNeedle) {
   }
 }
 
-TEST(AttemptView, IsNeverTooOldWhereNoNeedleMoves) {
+TEST(AttemptView, NeverAgesWhileNoNeedleMoves) {
   for (const AttemptPhase phase : {AttemptPhase::kStarting, AttemptPhase::kStopped, AttemptPhase::kFinishing,
                                    AttemptPhase::kFinished, AttemptPhase::kFailed}) {
     EXPECT_EQ(aged(view_in(phase), 60.0).phase, phase);

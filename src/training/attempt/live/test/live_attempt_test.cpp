@@ -9,7 +9,7 @@
 namespace trocar::attempt {
 namespace {
 
-TEST(LiveAttempt, WithoutAThreadFailsWithTheReason) {
+TEST(LiveAttempt, FailsWithAReasonWithoutAThread) {
   const auto open = testing::open_cached_case();
   ASSERT_TRUE(open) << open.error().text();
   const TemporaryFolder folder;

@@ -102,7 +102,7 @@ TEST_F(LiveOperatorTest, CoversMissingTicksWithOneLongerStep) {
   EXPECT_NEAR(witness_->views[1].time_s, 0.007, kTolerance_s);
 }
 
-TEST_F(LiveOperatorTest, StandsStillWhileTheServerIsAwayThoughTimeGoesOn) {
+TEST_F(LiveOperatorTest, PausesTheOperatorDuringAServerOutage) {
   live_->begin(100.0);
   take(kServer_s);
   take(kServer_s + 0.001, telemetry::InsertionPhase::kInserted);
@@ -120,7 +120,7 @@ TEST_F(LiveOperatorTest, StandsStillWhileTheServerIsAwayThoughTimeGoesOn) {
   EXPECT_EQ(session.samples[2].events[0].id, static_cast<std::uint8_t>(telemetry::LimitReason::kResumedInside));
 }
 
-TEST_F(LiveOperatorTest, CountsNoOutageAsTheTraineesTime) {
+TEST_F(LiveOperatorTest, ExcludesOutagesFromTheAttemptTime) {
   // 51 s of puncture, an outage of 39 s in the midst of it: the report says 51 s, not 90. The gun's time is active
   // time, too.
   constexpr double kActive_s = 51.0, kOutage_s = 39.0, kBefore_s = 20.0, kFired_s = 45.0;
@@ -154,7 +154,7 @@ TEST_F(LiveOperatorTest, CountsNoOutageAsTheTraineesTime) {
   EXPECT_EQ(session->interruptions[0].reason, tasks::kServerWasAway);
 }
 
-TEST_F(LiveOperatorTest, CountsTicksThatCouldNotBeAnsweredAsAnInterruption) {
+TEST_F(LiveOperatorTest, CountsUnansweredTicksAsAnInterruption) {
   live_->begin(0.0);
   take(kServer_s);
   for (int n = 1; n <= 2000; ++n) ASSERT_TRUE(live_->take_unseen(tick(kServer_s + 0.001 * n)));
@@ -175,7 +175,7 @@ link::Reply scene_reply(std::uint64_t number, const anatomy::TissueTable& tissue
   return {1, true, "", number, {option}, tissues.to_toml()};
 }
 
-TEST_F(LiveOperatorTest, RecordsFromWhichTickOnParametersWereInForce) {
+TEST_F(LiveOperatorTest, RecordsTheTickOfAParameterChange) {
   anatomy::TissueTable changed = the_case_.tissues;
   ASSERT_TRUE(anatomy::apply_override(changed, "skin.fp=6"));
   KnownScenes known;
@@ -200,7 +200,7 @@ TEST_F(LiveOperatorTest, RecordsFromWhichTickOnParametersWereInForce) {
   EXPECT_EQ(session.parameters[1].tissue_table_toml, changed.to_toml());
 }
 
-TEST_F(LiveOperatorTest, SaysThatAServerNeverToldItsParameters) {
+TEST_F(LiveOperatorTest, WarnsIfAServerNeverReportedItsParameters) {
   live_->begin(0.0);
   take(kServer_s);
   ASSERT_TRUE(record_->note_scene(3, KnownScenes{}));
@@ -209,7 +209,7 @@ TEST_F(LiveOperatorTest, SaysThatAServerNeverToldItsParameters) {
   ASSERT_EQ(result->warnings.size(), 1u);
 }
 
-TEST_F(LiveOperatorTest, CountsTheTicksThatAStoppedProgramNeverReadAsUnseen) {
+TEST_F(LiveOperatorTest, CountsTicksMissedWhileSuspendedAsUnseen) {
   live_->begin(0.0);
   take(kServer_s);
   for (int i = 1; i <= 1100; ++i) ASSERT_TRUE(live_->take_unseen(tick(kServer_s + 0.001 * i)));
@@ -220,7 +220,7 @@ TEST_F(LiveOperatorTest, CountsTheTicksThatAStoppedProgramNeverReadAsUnseen) {
   EXPECT_NEAR(witness_->views[1].time_s - witness_->views[0].time_s, kStep_s, kTolerance_s);
 }
 
-TEST_F(LiveOperatorTest, RecordsWhatTheOperatorCouldNotAnswer) {
+TEST_F(LiveOperatorTest, RecordsUnansweredTicks) {
   live_->begin(0.0);
   take(kServer_s);
   for (int i = 1; i <= 100; ++i) ASSERT_TRUE(live_->take_unseen(tick(kServer_s + 0.001 * i)));
@@ -231,7 +231,7 @@ TEST_F(LiveOperatorTest, RecordsWhatTheOperatorCouldNotAnswer) {
   EXPECT_EQ(recorded().samples.size(), 102u);
 }
 
-TEST_F(LiveOperatorTest, FiresAtTheTickAfterTheCommandAndEndsWhenTheOperatorIsDone) {
+TEST_F(LiveOperatorTest, FiresOnTheNextTickAndEndsWithTheOperator) {
   witness_->fires_at = 2;
   witness_->done_at = 4;
   live_->begin(0.0);

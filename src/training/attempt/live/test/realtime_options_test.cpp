@@ -17,7 +17,7 @@ TEST(RealtimeOptions, TakesNoneOneOrTwoServers) {
   EXPECT_TRUE(check({"ipc:///tmp/a", "ipc:///tmp/b"}));
 }
 
-TEST(RealtimeOptions, RefusesWhatIsNoPairOfServersAsUsage) {
+TEST(RealtimeOptions, RefusesInvalidServersAsUsageErrors) {
   const std::vector<std::vector<std::string>> wrong{{"ipc:///tmp/a", "ipc:///tmp/b", "ipc:///tmp/c"},
                                                     {"ipc:///tmp/a", "ipc:///tmp/a"},
                                                     {"http://127.0.0.1"},
@@ -30,7 +30,7 @@ TEST(RealtimeOptions, RefusesWhatIsNoPairOfServersAsUsage) {
   }
 }
 
-TEST(RealtimeOptions, LetsKeysOpenServersOfOtherMachines) {
+TEST(RealtimeOptions, AllowsRemoteServersWithKeys) {
   RealtimeOptions options;
   options.endpoints = {"tcp://192.0.2.1:5571"};
   options.security.emplace();

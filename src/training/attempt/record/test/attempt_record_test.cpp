@@ -69,7 +69,7 @@ class GunRecordTest : public ::testing::Test {
   std::optional<AttemptRecord> record_;
 };
 
-TEST_F(GunRecordTest, DoesNotCopyItsTicksWithinTheTimeItWasMadeFor) {
+TEST_F(GunRecordTest, DoesNotReallocateTicksWithinItsCapacity) {
   begin(true, true);
   go_to(0.0);
   const telemetry::TickSample* first = record_->samples().data();
@@ -94,7 +94,7 @@ TEST_F(GunRecordTest, AnEmptyGunCannotBeFired) {
   EXPECT_EQ(recorded_kinds(), (std::vector<tasks::ActionKind>{kFire, kLoad, kFire}));
 }
 
-TEST_F(GunRecordTest, WithoutACoaxialNeedleTheGunIsLoadedOutsideOnly) {
+TEST_F(GunRecordTest, LoadsOnlyOutsideWithoutACoaxialNeedle) {
   begin(true, false);
   go_to(40.0);
   EXPECT_EQ(act(kFire), kFired);
@@ -108,7 +108,7 @@ TEST_F(GunRecordTest, WithoutACoaxialNeedleTheGunIsLoadedOutsideOnly) {
   EXPECT_EQ(recorded_kinds(), (std::vector<tasks::ActionKind>{kFire, kLoad}));
 }
 
-TEST_F(GunRecordTest, AnImpossibleCommandOfAnOperatorIsNotRecorded) {
+TEST_F(GunRecordTest, DoesNotRecordImpossibleOperatorCommands) {
   begin(true, false);
   for (const tasks::ActionKind kind : {kFire, kFire, kLoad}) {
     tasks::HandCommand command;
@@ -120,7 +120,7 @@ TEST_F(GunRecordTest, AnImpossibleCommandOfAnOperatorIsNotRecorded) {
   EXPECT_EQ(recorded_kinds(), std::vector<tasks::ActionKind>{kFire});
 }
 
-TEST_F(GunRecordTest, APlainNeedleHasNoGunAndNothingHappensBeforeTheFirstSample) {
+TEST_F(GunRecordTest, RefusesGunActionsForAPlainNeedle) {
   begin(false, false);
   EXPECT_EQ(act(kReplaceStylet), "");
   go_to(40.0);
@@ -139,7 +139,7 @@ xray::DuctTree obstructed_duct() {
   return tree;
 }
 
-TEST_F(GunRecordTest, AGuideWireStopsAtAnObstructionAndBucklesOutsideOfTheDucts) {
+TEST_F(GunRecordTest, GuideWireStopsAtAnObstructionAndBucklesOutside) {
   begin(false, false);
   the_case_.ducts = std::make_shared<const xray::DuctTree>(obstructed_duct());
   go_to(40.0);
@@ -152,7 +152,7 @@ TEST_F(GunRecordTest, AGuideWireStopsAtAnObstructionAndBucklesOutsideOfTheDucts)
   EXPECT_NEAR(advance_wire(50.0), 50.0, 1e-9) << "a task without a way for it";
 }
 
-TEST_F(GunRecordTest, NamesTheVersionOfItsForces) {
+TEST_F(GunRecordTest, RecordsTheForceVersion) {
   begin(true, false);
   go_to(-1.0);
   record_.reset();

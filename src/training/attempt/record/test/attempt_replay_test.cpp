@@ -44,7 +44,7 @@ TEST(AttemptReplay, GivesTheTickOfATime) {
   EXPECT_EQ(replay->shaft_at(3.0).back(), replay->at(3.0).tip_mm);
 }
 
-TEST(AttemptReplay, NamesWhatHappenedInOrder) {
+TEST(AttemptReplay, ListsEventsInOrder) {
   const auto replay = AttemptReplay::load(recorded().session, recorded().open);
   ASSERT_TRUE(replay);
   std::string kinds;
@@ -83,7 +83,7 @@ storage::Session session_beside_the_path(double beside_mm) {
   return *std::move(session);
 }
 
-TEST(AttemptReplay, TheWorstMomentIsTheFarthestFromThePathFromOneMillimetreOn) {
+TEST(AttemptReplay, WorstMomentIsTheLargestPathErrorAboveOneMm) {
   const auto near = AttemptReplay::of(session_beside_the_path(0.9), recorded().open);
   ASSERT_TRUE(near) << near.error().text();
   EXPECT_FALSE(near->worst());
@@ -126,14 +126,14 @@ TEST(AttemptReplay, MovesTheTransducerBetweenItsRecordedMoments) {
   EXPECT_EQ(at(9.0).p(), later.p());
 }
 
-TEST(AttemptReplay, TellsNoTransducerThatWasNotRecorded) {
+TEST(AttemptReplay, HasNoTransducerIfNoneWasRecorded) {
   const TemporaryFolder folder;
   const auto replay = AttemptReplay::load(short_session(folder, {}), recorded().open);
   ASSERT_TRUE(replay) << replay.error().text();
   EXPECT_FALSE(replay->transducer_at(0.5));
 }
 
-TEST(AttemptReplay, ANeedleThatMetNothingHasNoScoreAndNoWorstMoment) {
+TEST(AttemptReplay, UnusedNeedleHasNoScoreOrWorstMoment) {
   const TemporaryFolder folder;
   const auto replay = AttemptReplay::load(short_session(folder, {}), recorded().open);  // two ticks in the air
   ASSERT_TRUE(replay) << replay.error().text();
@@ -141,7 +141,7 @@ TEST(AttemptReplay, ANeedleThatMetNothingHasNoScoreAndNoWorstMoment) {
   EXPECT_FALSE(replay->worst());
 }
 
-TEST(AttemptReplay, ASessionInMemoryIsSeenLikeOneOfAFile) {
+TEST(AttemptReplay, SessionInMemoryMatchesASessionFile) {
   auto session = storage::load_session(recorded().session);
   ASSERT_TRUE(session);
   const double score = session->outcome->score;

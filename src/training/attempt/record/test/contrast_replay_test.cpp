@@ -36,7 +36,7 @@ ContrastReplay two_places() {
   return {flow_at_rest(), two_injections(), kIodine_mg_per_ml};
 }
 
-TEST(ContrastReplay, InjectsAtTheRecordedPlaces) {
+TEST(ContrastReplay, InjectsAtTheRecordedPositions) {
   ContrastReplay replay = two_places();
   EXPECT_EQ(replay.at(kStart_s - 0.1), nullptr) << "nothing was injected yet";
   ASSERT_TRUE(replay.at(kStart_s + 0.5));
@@ -48,7 +48,7 @@ TEST(ContrastReplay, InjectsAtTheRecordedPlaces) {
   EXPECT_GT(replay.totals().tissue_mg, 0.0);
 }
 
-TEST(ContrastReplay, TheStateOfATimeDoesNotDependOnTheWayThere) {
+TEST(ContrastReplay, StateIsIndependentOfSeekHistory) {
   ContrastReplay straight = two_places(), around = two_places();
   for (const double time_s :
        {kStart_s + 0.6, kStart_s + 8.0, kStart_s + 2.0, kStart_s - 5.0, kStart_s + 4.0, kStart_s + 0.3, kStart_s + 4.0})
@@ -63,7 +63,7 @@ TEST(ContrastReplay, TheStateOfATimeDoesNotDependOnTheWayThere) {
     EXPECT_EQ(a->pieces[n].iodine_mg_per_ml, b->pieces[n].iodine_mg_per_ml);
 }
 
-TEST(ContrastReplay, ManyCopiesAreThinnedAndStillRight) {
+TEST(ContrastReplay, ThinningCheckpointsKeepsTheStateExact) {
   ContrastReplay replay = two_places();
   replay.at(kStart_s + 300.0);  // more copies than are kept
   replay.at(kStart_s + 20.0);

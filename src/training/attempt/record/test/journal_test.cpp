@@ -57,7 +57,7 @@ class OtherTrainer {
   bool has_begun_ = false;
 };
 
-TEST_F(JournalTest, NothingIsCutOffAtFirstOrAfterAnEnd) {
+TEST_F(JournalTest, FindsNothingInitiallyOrAfterAnEnd) {
   EXPECT_FALSE(journal.find_cut_off());
   ASSERT_TRUE(write_file_atomically(state.session, "ticks"));
   ASSERT_TRUE(journal.begin(state));
@@ -65,7 +65,7 @@ TEST_F(JournalTest, NothingIsCutOffAtFirstOrAfterAnEnd) {
   EXPECT_FALSE(journal.find_cut_off());
 }
 
-TEST_F(JournalTest, WhatWasUnderWayComesBack) {
+TEST_F(JournalTest, FindsAnInterruptedAttempt) {
   ASSERT_TRUE(write_file_atomically(state.session, "ticks"));
   {
     Journal cut_off(folder->path());
@@ -77,7 +77,7 @@ TEST_F(JournalTest, WhatWasUnderWayComesBack) {
   EXPECT_TRUE(found->choice == state.choice);
 }
 
-TEST_F(JournalTest, AnAttemptOfALivingTrainerIsNotCutOffUntilItIsKilled) {
+TEST_F(JournalTest, IgnoresARunningTrainersAttemptUntilItIsKilled) {
   ASSERT_TRUE(write_file_atomically(state.session, "ticks"));
   OtherTrainer other(folder->path(), state);
   ASSERT_TRUE(other.has_begun());
@@ -105,14 +105,14 @@ TEST_F(JournalTest, AnAttemptOfALivingTrainerIsNotCutOffUntilItIsKilled) {
   EXPECT_FALSE(journal.claim(*found));
 }
 
-TEST_F(JournalTest, TheAttemptUnderWayHereIsNotCutOff) {
+TEST_F(JournalTest, IgnoresItsOwnRunningAttempt) {
   ASSERT_TRUE(write_file_atomically(state.session, "ticks"));
   ASSERT_TRUE(journal.begin(state));
   EXPECT_FALSE(journal.find_cut_off());
   EXPECT_FALSE(Journal(folder->path()).find_cut_off());
 }
 
-TEST_F(JournalTest, WithoutItsSessionThereIsNothingToRecover) {
+TEST_F(JournalTest, FindsNothingWithoutASession) {
   {
     Journal cut_off(folder->path());
     ASSERT_TRUE(cut_off.begin(state));
@@ -120,7 +120,7 @@ TEST_F(JournalTest, WithoutItsSessionThereIsNothingToRecover) {
   EXPECT_FALSE(journal.find_cut_off());
 }
 
-TEST_F(JournalTest, DamageIsNoCrash) {
+TEST_F(JournalTest, SurvivesDamagedEntries) {
   ASSERT_TRUE(write_file_atomically(state.session, "ticks"));
   std::filesystem::create_directories(folder->path() / "attempts");
   for (const char* text : {"", "{", "[]", "{\"version\": 2}", "{\"version\": 1, \"session\": 3}", "\xff\xfe"}) {
@@ -129,7 +129,7 @@ TEST_F(JournalTest, DamageIsNoCrash) {
   }
 }
 
-TEST_F(JournalTest, AFieldOfTheWrongTypeIsNoOtherCase) {
+TEST_F(JournalTest, IgnoresEntriesWithFieldsOfTheWrongType) {
   ASSERT_TRUE(write_file_atomically(state.session, "ticks"));
   {
     Journal cut_off(folder->path());

@@ -35,7 +35,7 @@ TEST(XrayReplay, ShowsNothingBeforeTheFirstExposure) {
   EXPECT_FALSE(xray_moment({}, 1.0));
 }
 
-TEST(XrayReplay, ShowsTheMomentItselfWhileTheBeamIsOn) {
+TEST(XrayReplay, ShowsTheCurrentMomentWhileTheBeamIsOn) {
   const auto moment = xray_moment(two_exposures(), 1.5);
   ASSERT_TRUE(moment && moment->image_s);
   EXPECT_EQ(*moment->image_s, 1.5);
@@ -56,7 +56,7 @@ TEST(XrayReplay, HoldsTheLastExposureWithItsOwnProjection) {
   EXPECT_EQ(end->image.lao_deg, 30.0);
 }
 
-TEST(XrayReplay, APulseBetweenTwoUsesIsAnExposure) {
+TEST(XrayReplay, PulseBetweenTwoSamplesIsAnExposure) {
   const std::vector<tasks::XrayUse> uses{use_at(1.0, 0, false, 0, 0), use_at(2.0, 0, false, 0, 0.067),
                                          use_at(3.0, 10, false, 0, 0.067)};
   EXPECT_FALSE(xray_moment(uses, 1.5)->image_s);
@@ -64,7 +64,7 @@ TEST(XrayReplay, APulseBetweenTwoUsesIsAnExposure) {
   EXPECT_TRUE(xray_moment(uses, 4.0)->is_held());
 }
 
-TEST(XrayReplay, KnowsWhenContrastAgentWasInjected) {
+TEST(XrayReplay, ReportsWhenContrastAgentIsInjected) {
   const auto is_injecting = [](double time_s) { return xray_moment(two_exposures(), time_s)->is_injecting_then; };
   EXPECT_FALSE(is_injecting(4.1));
   EXPECT_TRUE(is_injecting(4.2));
@@ -82,7 +82,7 @@ double volume_ml(const InjectionSteps& made, double to_s) {
   return ml;
 }
 
-TEST(XrayReplay, InjectsTheRecordedVolumesAtTheRecordedTimesAndTips) {
+TEST(XrayReplay, ReproducesRecordedInjections) {
   const auto made = injection_steps(two_exposures(), [](double time_s) { return Vec3(time_s, 0.0, 0.0); });
   ASSERT_FALSE(made.steps.empty());
   EXPECT_NEAR(made.start_s, 4.15, kInjectionStep_s) << "0.1 s before the first use with contrast agent";
@@ -103,7 +103,7 @@ TEST(XrayReplay, SpreadsASuddenVolumeOverSteps) {
   for (const InjectionStep& step : made.steps) EXPECT_LE(step.ml_per_s, kMostRate_ml_per_s + 1e-9);
 }
 
-TEST(XrayReplay, WithoutContrastAgentThereAreNoSteps) {
+TEST(XrayReplay, HasNoStepsWithoutContrastAgent) {
   const auto nowhere = [](double) { return Vec3(Vec3::Zero()); };
   EXPECT_TRUE(injection_steps({}, nowhere).steps.empty());
   EXPECT_TRUE(injection_steps(std::vector{use_at(1.0, 0, true, 0, 1.0)}, nowhere).steps.empty());

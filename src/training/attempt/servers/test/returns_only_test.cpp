@@ -12,7 +12,7 @@ class ReturnsOnly : public SupervisionTest {
   ReturnsOnly() { recovery = Recovery::kReturnsOnly; }
 };
 
-TEST_F(ReturnsOnly, PreparesAServerAgainThatCameBackOrStalled) {
+TEST_F(ReturnsOnly, PreparesARestartedOrStalledServerAgain) {
   start();
   server->come_back();
   run_for(0.01);
@@ -24,7 +24,7 @@ TEST_F(ReturnsOnly, PreparesAServerAgainThatCameBackOrStalled) {
   EXPECT_EQ(tool->figures().returns, 2);
 }
 
-TEST_F(ReturnsOnly, FailsWithAServerThatEnds) {
+TEST_F(ReturnsOnly, FailsWhenAServerEnds) {
   start();
   server->end("it ended");
   run_for(0.01);
@@ -33,7 +33,7 @@ TEST_F(ReturnsOnly, FailsWithAServerThatEnds) {
   EXPECT_EQ(server->restarts, 0);
 }
 
-TEST_F(ReturnsOnly, FailsAfterTheTimeoutEvenWithoutAProcessor) {
+TEST_F(ReturnsOnly, FailsAfterTheTimeoutEvenWithoutProcessorTime) {
   start();
   server->is_silent = server->has_no_processor = true;
   run_for(0.9 * kTimeout_s);
@@ -51,7 +51,7 @@ TEST_F(ReturnsOnly, FailsWithAnyOtherFault) {
   EXPECT_EQ(server->count(ServerCommand::kResetFault), 0);
 }
 
-TEST_F(ReturnsOnly, FailsWithAFaultThatWasThereBefore) {
+TEST_F(ReturnsOnly, FailsOnAFaultThatExistedBefore) {
   supervise();
   server->set_fault(GateFault::kRunaway);
   EXPECT_TRUE(run_until([&] { return has_given_up(); }, 1.0));

@@ -28,7 +28,7 @@ TEST_F(SupervisionTest, PlacesTheToolThenSwitchesTheForcesOn) {
   EXPECT_NEAR(static_cast<double>(ticks), 100.0, 1.0);
 }
 
-TEST_F(SupervisionTest, WaitsForControlThenConnectsAnew) {
+TEST_F(SupervisionTest, WaitsForControlThenReconnects) {
   supervise();
   server->has_control = false;
   run_for(2.5);
@@ -40,7 +40,7 @@ TEST_F(SupervisionTest, WaitsForControlThenConnectsAnew) {
   EXPECT_EQ(server->restarts, 0);
 }
 
-TEST_F(SupervisionTest, GivesUpAServerThatEndsBeforeItWasHeard) {
+TEST_F(SupervisionTest, GivesUpOnAServerThatEndsBeforeItsFirstMessage) {
   supervise();
   server->end("no gamepad is connected");
   run_for(0.1);
@@ -65,7 +65,7 @@ TEST_F(SupervisionTest, AnnouncesThenRestartsAServerThatEnded) {
   EXPECT_TRUE(tool->banner().empty()) << tool->banner();
 }
 
-TEST_F(SupervisionTest, PlacesTheToolWhereItWasLast) {
+TEST_F(SupervisionTest, RestoresTheLastToolPose) {
   start();
   const Pose deeper = X_PN * Pose::translation({0.0, 0.0, 25.0});
   tool->place_at(deeper);
@@ -75,7 +75,7 @@ TEST_F(SupervisionTest, PlacesTheToolWhereItWasLast) {
   EXPECT_EQ(server->target->X_PN.p(), deeper.p());
 }
 
-TEST_F(SupervisionTest, GivesUpAServerThatCannotBeStartedAgain) {
+TEST_F(SupervisionTest, GivesUpOnAServerThatCannotRestart) {
   start();
   server->restarts_well = fail("no trocar-hapticd", "here", "install it");
   server->end("it ended");
@@ -85,7 +85,7 @@ TEST_F(SupervisionTest, GivesUpAServerThatCannotBeStartedAgain) {
   EXPECT_TRUE(tool->view().waits_for_resume);
 }
 
-TEST_F(SupervisionTest, GivesUpAServerThatDoesNotStay) {
+TEST_F(SupervisionTest, GivesUpOnAServerThatKeepsEnding) {
   start();
   for (int times = 0; times < 6; ++times) {
     server->end("it ended");
@@ -100,7 +100,7 @@ TEST_F(SupervisionTest, GivesUpAServerThatDoesNotStay) {
   EXPECT_TRUE(run_until([&] { return tool->is_fresh(); })) << tool->banner();
 }
 
-TEST_F(SupervisionTest, ForgetsReturnsOfMoreThanAMinuteAgo) {
+TEST_F(SupervisionTest, ForgetsReturnsOlderThanAMinute) {
   start();
   for (int times = 0; times < 9; ++times) {
     server->end("it ended");
@@ -109,7 +109,7 @@ TEST_F(SupervisionTest, ForgetsReturnsOfMoreThanAMinuteAgo) {
   }
 }
 
-TEST_F(SupervisionTest, RestartsAServerThatIsSilentAndSleeps) {
+TEST_F(SupervisionTest, RestartsASilentSleepingServer) {
   start();
   server->is_silent = true;
   run_for(0.4);
@@ -121,7 +121,7 @@ TEST_F(SupervisionTest, RestartsAServerThatIsSilentAndSleeps) {
   EXPECT_TRUE(run_until([&] { return tool->is_fresh(); }));
 }
 
-TEST_F(SupervisionTest, WaitsFourTimesAsLongForAServerWithoutAProcessor) {
+TEST_F(SupervisionTest, WaitsFourTimesLongerForAServerWithoutProcessor) {
   start();
   server->is_silent = server->has_no_processor = true;
   run_for(3.9 * kTimeout_s);
@@ -131,7 +131,7 @@ TEST_F(SupervisionTest, WaitsFourTimesAsLongForAServerWithoutAProcessor) {
   EXPECT_EQ(server->restarts, 1);
 }
 
-TEST_F(SupervisionTest, GoesOnWithAServerThatGetsAProcessorAgain) {
+TEST_F(SupervisionTest, ContinuesWithAServerThatRegainsProcessorTime) {
   start();
   server->is_silent = server->has_no_processor = true;
   run_for(2.0 * kTimeout_s);
@@ -143,7 +143,7 @@ TEST_F(SupervisionTest, GoesOnWithAServerThatGetsAProcessorAgain) {
   EXPECT_EQ(server->connections, 1);
 }
 
-TEST_F(SupervisionTest, PreparesAServerAgainThatCameBackByItself) {
+TEST_F(SupervisionTest, PreparesAServerThatReturnedByItself) {
   start();
   server->come_back();
   run_for(0.02);
@@ -156,7 +156,7 @@ TEST_F(SupervisionTest, PreparesAServerAgainThatCameBackByItself) {
   EXPECT_EQ(tool->figures().returns, 1);
 }
 
-TEST_F(SupervisionTest, ResetsTheFaultOfAStalledLoopHoweverOften) {
+TEST_F(SupervisionTest, ResetsStallFaultsAnyNumberOfTimes) {
   start();
   for (int times = 1; times <= 8; ++times) {
     server->set_fault(times % 2 == 0 ? GateFault::kLoopSlow : GateFault::kLoopStalled);
@@ -182,14 +182,14 @@ TEST_F(SupervisionTest, ResetsAnotherFaultOverANewConnection) {
   EXPECT_EQ(tool->view().restarts, 1);
 }
 
-TEST_F(SupervisionTest, AFaultThatStaysEndsInGivingUp) {
+TEST_F(SupervisionTest, GivesUpOnAPermanentFault) {
   start();
   server->is_fault_permanent = true;
   server->set_fault(GateFault::kEncoderStuck);
   EXPECT_TRUE(run_until([&] { return has_given_up(); }, 10.0 * kTimeout_s)) << tool->banner();
 }
 
-TEST_F(SupervisionTest, OpensALostDeviceAgainUntilItIsThere) {
+TEST_F(SupervisionTest, ReopensALostDeviceUntilItReturns) {
   start("gamepad");
   server->is_device_gone = true;
   server->set_fault(GateFault::kDeviceLost);
@@ -204,7 +204,7 @@ TEST_F(SupervisionTest, OpensALostDeviceAgainUntilItIsThere) {
   ASSERT_EQ(recoveries.size(), 1u);
 }
 
-TEST_F(SupervisionTest, NeverSwitchesForcesOnByItselfInAPersonsHand) {
+TEST_F(SupervisionTest, NeverSwitchesForcesOnInAPersonsHand) {
   start("openhaptics");
   for (const GateFault fault : {GateFault::kLoopStalled, GateFault::kRunaway, GateFault::kDeviceSilent}) {
     server->set_fault(fault);
@@ -219,7 +219,7 @@ TEST_F(SupervisionTest, NeverSwitchesForcesOnByItselfInAPersonsHand) {
   }
 }
 
-TEST_F(SupervisionTest, AStallBeforeTheForcesWereOnNeedsNoSecondRequestOfThePerson) {
+TEST_F(SupervisionTest, RetriesStallsBeforeTheFirstForcesUnasked) {
   for (const ServerState state : {ServerState::kLoading, ServerState::kStarting, ServerState::kSettling})
     for (const GateFault fault : {GateFault::kLoopStalled, GateFault::kLoopSlow, GateFault::kDeviceSilent}) {
       supervise("openhaptics");
@@ -241,7 +241,7 @@ TEST_F(SupervisionTest, AStallBeforeTheForcesWereOnNeedsNoSecondRequestOfThePers
   EXPECT_TRUE(tool->view().waits_for_resume) << "five stalls are too many";
 }
 
-TEST_F(SupervisionTest, ADeviceThatStaysSilentBeforeTheForcesWereOnWaitsForResume) {
+TEST_F(SupervisionTest, DeviceSilentBeforeFirstForcesWaitsForResume) {
   supervise("openhaptics");
   server->is_fault_permanent = true;
   ASSERT_TRUE(run_until([&] { return tool->state() == ServerState::kLoading; }));
@@ -251,7 +251,7 @@ TEST_F(SupervisionTest, ADeviceThatStaysSilentBeforeTheForcesWereOnWaitsForResum
   EXPECT_EQ(server->count(ServerCommand::kStart), 0);
 }
 
-TEST_F(SupervisionTest, APersonsDeviceThatIsGoneWaitsForResume) {
+TEST_F(SupervisionTest, LostDeviceOfAPersonWaitsForResume) {
   start("openhaptics");
   server->is_device_gone = true;
   server->set_fault(GateFault::kDeviceLost);
@@ -302,7 +302,7 @@ TEST_F(SupervisionTest, StoppedForcesResumeWithoutANewPreparation) {
   EXPECT_EQ(tool->activations(), 1);
 }
 
-TEST_F(SupervisionTest, AServerThatEndsWhileForcesAreStoppedIsRestartedByResume) {
+TEST_F(SupervisionTest, ResumeRestartsAServerThatEndedWhileStopped) {
   start();
   tool->stop_forces();
   run_for(0.01);
@@ -315,7 +315,7 @@ TEST_F(SupervisionTest, AServerThatEndsWhileForcesAreStoppedIsRestartedByResume)
   EXPECT_EQ(server->restarts, 1);
 }
 
-TEST_F(SupervisionTest, StoppedWhilePreparingIsPreparedByResume) {
+TEST_F(SupervisionTest, ResumePreparesAToolStoppedDuringPreparation) {
   supervise();
   run_for(0.003);
   tool->stop_forces();
@@ -358,7 +358,7 @@ TEST_F(SupervisionTest, ForgetsParametersThatWereRefused) {
   EXPECT_EQ(server->parameters, (std::vector<link::SetParameters>{kHarderSkin}));
 }
 
-TEST_F(SupervisionTest, GoesOnWithoutParametersThatAreRefusedWhileItPrepares) {
+TEST_F(SupervisionTest, ContinuesWithoutRefusedParameters) {
   start();
   tool->set_parameters(kHarderSkin);
   run_for(0.05);
@@ -379,7 +379,7 @@ TEST_F(SupervisionTest, SendsParametersThatChangedWhileItPrepared) {
   EXPECT_EQ(server->parameters, (std::vector<link::SetParameters>{kHarderSkin}));
 }
 
-TEST_F(SupervisionTest, TimeWithoutPollsIsNoDelayOfTheServer) {
+TEST_F(SupervisionTest, DoesNotCountTimeWithoutPollsAsServerDelay) {
   supervise("virtual:premium");
   server->is_device_fixed = true;  // it is never where it was put
   run_for(0.1);
@@ -390,7 +390,7 @@ TEST_F(SupervisionTest, TimeWithoutPollsIsNoDelayOfTheServer) {
   ASSERT_TRUE(run_until([&] { return server->connections == 2; }, 2.0 * kTimeout_s));
 }
 
-TEST_F(SupervisionTest, ASceneThatIsRefusedEndsInGivingUp) {
+TEST_F(SupervisionTest, GivesUpOnARefusedScene) {
   supervise();
   server->refuses_scene = "no such patient";
   EXPECT_TRUE(run_until([&] { return has_given_up(); }, 10.0)) << tool->banner();

@@ -33,7 +33,7 @@ struct ToolDevices : ::testing::Test {
   TemporaryFolder folder;
 };
 
-TEST_F(ToolDevices, AreListedByTheNamesOfTheVendorsSetup) {
+TEST_F(ToolDevices, AreListedByVendorSetupNames) {
   configure("Right Device.config");
   configure("Left Device.config");
   configure("notes.txt");
@@ -47,11 +47,11 @@ TEST_F(ToolDevices, AreListedByTheNamesOfTheVendorsSetup) {
   EXPECT_EQ(device_title("openhaptics:Left Device"), "Left Device (OpenHaptics)");
 }
 
-TEST_F(ToolDevices, WithoutASetupThereIsTheDefaultDevice) {
+TEST_F(ToolDevices, IncludeTheDefaultDeviceWithoutASetup) {
   EXPECT_TRUE(has(specs(), "openhaptics"));
 }
 
-TEST_F(ToolDevices, OneDeviceIsNotInTwoHands) {
+TEST_F(ToolDevices, RefuseOneDeviceForTwoTools) {
   EXPECT_TRUE(can_be_used_together("mouse", "mouse"));
   EXPECT_TRUE(can_be_used_together("gamepad", "mouse"));
   EXPECT_TRUE(can_be_used_together("openhaptics:Left Device", "openhaptics:Right Device"));

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFrame_s = 1.0 / 60.0, kTick_s = 0.001;
 
-TEST(MovedTowards, GoesNoFurtherThanItMay) {
+TEST(MovedTowards, IsLimitedInDistanceAndAngle) {
   const Pose from;
   const Pose to(Eigen::AngleAxisd(1.0, Vec3::UnitX()).toRotationMatrix(), Vec3(30.0, 0.0, 40.0));
   const Pose on_the_way = moved_towards(from, to, 5.0, 0.25);
@@ -20,7 +20,7 @@ TEST(MovedTowards, GoesNoFurtherThanItMay) {
   EXPECT_NEAR((there.p() - to.p()).norm() + (there.R() - to.R()).norm(), 0.0, 1e-12);
 }
 
-TEST(MovedTowards, StaysWhereThePoseIsNoNumber) {
+TEST(MovedTowards, StaysForANonFinitePose) {
   const Pose from = Pose::translation({1.0, 2.0, 3.0});
   const Pose nowhere = Pose::translation(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
   EXPECT_EQ(moved_towards(from, nowhere, 1.0, 1.0).p(), from.p());
@@ -33,7 +33,7 @@ TEST(TurnBetween, IsTheInverseOfMoved) {
   }
 }
 
-TEST(LedPose, AJumpOfThePointerIsNoJumpOfTheHand) {
+TEST(LedPose, LimitsTheSpeedOfAPointerJump) {
   const SpeedLimits limits;
   LedPose hand(limits);
   hand.put({});
@@ -49,7 +49,7 @@ TEST(LedPose, AJumpOfThePointerIsNoJumpOfTheHand) {
   EXPECT_NEAR(hand.X_P().p().x(), 2.0 * limits.most_mm_per_s, 0.1);
 }
 
-TEST(LedPose, MakesAnEvenMotionOfAWindowsFrames) {
+TEST(LedPose, SmoothsMotionBetweenFrames) {
   constexpr double kSpeed_mm_s = 10.0;
   LedPose hand;
   hand.put({});
@@ -67,7 +67,7 @@ TEST(LedPose, MakesAnEvenMotionOfAWindowsFrames) {
   EXPECT_LT(fastest, 1.1 * kSpeed_mm_s);
 }
 
-TEST(LedPose, StandsStillWhenNothingIsSaidAnyMore) {
+TEST(LedPose, StopsWithoutNewTargets) {
   LedPose hand;
   hand.put({});
   hand.lead({}, {40.0, 0.0, 0.0}, Vec3::Zero());
@@ -76,7 +76,7 @@ TEST(LedPose, StandsStillWhenNothingIsSaidAnyMore) {
   EXPECT_NEAR(hand.v_P().norm(), 0.0, 1e-6);
 }
 
-TEST(LedPose, ClampedStaysWhateverIsAsked) {
+TEST(LedPose, StaysWhileClamped) {
   LedPose hand;
   hand.put({});
   hand.lead(Pose::translation({50.0, 0.0, 0.0}), Vec3::Zero(), Vec3::Zero());
@@ -89,7 +89,7 @@ TEST(LedPose, ClampedStaysWhateverIsAsked) {
   EXPECT_EQ(hand.v_P(), Vec3::Zero());
 }
 
-TEST(LedPose, IgnoresWhatIsNoNumber) {
+TEST(LedPose, IgnoresNonFiniteTargets) {
   LedPose hand;
   hand.put({});
   hand.lead(Pose::translation(Vec3::Constant(std::numeric_limits<double>::infinity())), Vec3::Zero(), Vec3::Zero());

@@ -38,7 +38,7 @@ TEST(PointerNeedle, AimsAlongThePathBeforeTheSkin) {
   EXPECT_NEAR(hand.X_PN().R().col(2).dot(path().direction()), 1.0, 1e-12);
 }
 
-TEST(PointerNeedle, ApproachesThePathOverTheSkinInBoundedSteps) {
+TEST(PointerNeedle, ApproachesThePathInBoundedSteps) {
   constexpr double kStep_mm = 2.0, kStep_rad = 0.05;
   PointerNeedle hand = needle();
   for (int step = 0; step < 30; ++step) hand.glide({1.0, 0.0, 0.5});
@@ -57,7 +57,7 @@ TEST(PointerNeedle, ApproachesThePathOverTheSkinInBoundedSteps) {
   EXPECT_NEAR(angle_between_rad(hand.X_PN().R().col(2), path().direction()), 0.0, 1e-6);
 }
 
-TEST(PointerNeedle, DoesNotApproachAnotherPathFromWithinTheBody) {
+TEST(PointerNeedle, DoesNotChangePathInsideTheBody) {
   PointerNeedle hand = needle();
   hand.push(PointerNeedle::kAbove_mm + 30.0);
   const Vec3 tip_P = hand.X_PN().p();
@@ -113,7 +113,7 @@ TEST(PointerNeedle, PushesAlongItsAxisWithinBounds) {
   EXPECT_DOUBLE_EQ(hand.past_mm(), -PointerNeedle::kFarthest_mm);
 }
 
-TEST(PointerNeedle, TurnsItsBevelTheShorterWayInBoundedSteps) {
+TEST(PointerNeedle, TurnsItsBevelByTheShorterArcInBoundedSteps) {
   constexpr double kStep_rad = 0.05;
   for (const double from_rad : {0.0, 1.0, -2.5, 3.1}) {
     PointerNeedle hand = needle();
@@ -136,7 +136,7 @@ TEST(PointerNeedle, TurnsItsBevelTheShorterWayInBoundedSteps) {
   EXPECT_TRUE(hand.turn_bevel(hand.X_PN().R().col(2), 0.1)) << "no direction across the needle";
 }
 
-TEST(PointerNeedle, TakesOverFromAnotherHand) {
+TEST(PointerNeedle, TakesOverAPose) {
   PointerNeedle first = needle();
   first.tilt({1, 0, 0}, {0, 0, -1}, 0.3, -0.2);
   first.turn(0.7);
@@ -148,7 +148,7 @@ TEST(PointerNeedle, TakesOverFromAnotherHand) {
   EXPECT_NEAR((second.entry_P() - first.entry_P()).norm(), 0.0, 0.2);
 }
 
-TEST(PointerNeedle, StaysSaneWhateverItIsTold) {
+TEST(PointerNeedle, StaysFiniteAndInBoundsForAnyInput) {
   Random rng(7);
   PointerNeedle hand = needle();
   const double odd[] = {0.0, 1e9, -1e9, std::numeric_limits<double>::quiet_NaN(), 0.2, -3.0};
@@ -207,7 +207,7 @@ TEST(PointerProbe, StaysOnTheSkinAndFacesInward) {
   EXPECT_NEAR(hand.X_PT().R().determinant(), 1.0, 1e-9);
 }
 
-TEST(PointerProbe, TurnsAboutItsBeamAndPressesNoDeeperThanItMay) {
+TEST(PointerProbe, TurnsAboutItsBeamAndLimitsPressDepth) {
   const Segment line = path();
   PointerProbe hand(patient(), needle_pose(line.a, line.direction()));
   const Vec3 beam_P = hand.X_PT().R().col(1);

@@ -28,14 +28,14 @@ class RestingTransducerTest : public ::testing::Test {
   static constexpr double kTremor_mm = 0.2;  // of three axes together
 };
 
-TEST_F(RestingTransducerTest, ComesDownFromAboveAndStaysPressedIn) {
+TEST_F(RestingTransducerTest, DescendsOntoTheSkinAndStaysPressedIn) {
   const RestingTransducer hand(*patient, path());
   EXPECT_NEAR(above_skin_mm(hand.at(0.0)), RestingTransducer::kAbove_mm, 0.5);
   for (const double time_s : {2.0, 10.0, 60.0})
     EXPECT_NEAR(above_skin_mm(hand.at(time_s)), -RestingTransducer::kPress_mm, 0.5) << time_s;
 }
 
-TEST_F(RestingTransducerTest, LooksIntoTheBodyBesideTheEntry) {
+TEST_F(RestingTransducerTest, FacesTheBodyBesideTheEntry) {
   const RestingTransducer hand(*patient, path());
   const link::HandTarget held = hand.at(10.0);
   EXPECT_NEAR((held.X_PN.p() - path().a).norm(), RestingTransducer::kBeside_mm, 0.15 * RestingTransducer::kBeside_mm);
@@ -45,7 +45,7 @@ TEST_F(RestingTransducerTest, LooksIntoTheBodyBesideTheEntry) {
   EXPECT_LT((held.X_PN.R() * held.X_PN.R().transpose() - Mat3::Identity()).norm(), 1e-9);
 }
 
-TEST_F(RestingTransducerTest, NeverStandsStillAndTellsItsVelocity) {
+TEST_F(RestingTransducerTest, TremblesAndReportsItsVelocity) {
   const RestingTransducer hand(*patient, path());
   constexpr double kStep_s = 1e-6;
   for (int i = 0; i < 400; ++i) {
