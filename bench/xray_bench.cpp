@@ -152,7 +152,7 @@ Status compare(const View& view, const xray::XrayVolume& volume, const fs::path&
   Figures best;
   double peer_ms = std::numeric_limits<double>::infinity(), likeness = 0.0;
   for (int round = 0; round < kRounds; ++round) {
-    const Figures figures = time_ms(1, kImagesPerRound, [&] { xray::project(volume, rays, {}, masses); });
+    const Figures figures = time_ms(1, kImagesPerRound, [&] { xray::project(volume, rays, masses); });
     if (!best.median || *figures.median < *best.median) best = figures;
     TROCAR_TRY(const PeerImage peer, run_plastimatch(ct, view.arm, folder));
     peer_ms = std::min(peer_ms, peer.ms);
@@ -189,7 +189,7 @@ Result<std::vector<CaseResult>> run_xray_benchmark(const Options& options) {
   TROCAR_TRY(const xray::Beam beam, xray::Beam::make(spectrum));
   xray::MassImage masses;
   const xray::XrayRays rays = xray::rays_of(all.front().arm);
-  xray::project(*volume, rays, {}, masses);
+  xray::project(*volume, rays, masses);
   std::vector<float> signal(masses.size());
   Figures figures = time_ms(2, 100, [&] { beam.signals(masses, signal); });
   results.push_back({"drr/512-poly", "ms", figures, {}, "signal of 80 kV behind the masses; drr/512 before it"});
@@ -209,7 +209,7 @@ Result<std::vector<CaseResult>> run_xray_benchmark(const Options& options) {
     const double turn = static_cast<double>(frame++) / kTurningFrames;
     arm.lao_deg = 90.0 * std::sin(6.28 * turn);
     arm.cranial_deg = 30.0 * std::sin(6.28 * 3.0 * turn);
-    xray::project(*body, xray::rays_of(arm), {}, masses);
+    xray::project(*body, xray::rays_of(arm), masses);
     beam.signals(masses, signal);
   });
   const auto& size = patient->ct.geometry.size;

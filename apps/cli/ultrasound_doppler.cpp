@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "motion/motion_clock.h"
+
 namespace trocar::cli {
 namespace {
 
@@ -68,7 +70,8 @@ ColourPicture colour_picture(std::shared_ptr<const ultrasound::VesselFlow> flow,
   doppler.settings = settings;
   ColourPicture colour;
   colour.settings = settings;
-  ultrasound::DopplerInput input{X_PT, echoes.geometry, echoes.beam, time_s, seed, &engine};
+  ultrasound::DopplerInput input{
+      X_PT, echoes.geometry, echoes.beam, time_s, seed, &engine, motion::MotionClock{}.at(time_s)};
   for (int n = 0; n < kPictures; ++n, ++input.seed) colour.scale_cm_per_s = doppler.render(input).scale_cm_per_s;
   colour.image = doppler.overlay(picture, raster);
   return colour;

@@ -19,6 +19,7 @@ import trocar.wire.HandTarget
 import trocar.wire.Heartbeat
 import trocar.wire.Hello
 import trocar.wire.LoadScene
+import trocar.wire.MotionDrive
 import trocar.wire.Needle
 import trocar.wire.Period
 import trocar.wire.Pong
@@ -173,6 +174,9 @@ def load_scene(patient, x_pw, **fields):
     scene = wire.LoadScene.LoadSceneT()
     scene.patient, scene.patientSeed, scene.tool, scene.needle = patient, 1, "needle", needle
     scene.forceModel, scene.seed, scene.xPw = "insertion", 1, x_pw
+    motion = wire.MotionDrive.MotionDriveT()
+    motion.periodS, motion.beginsS, motion.heldPhase, motion.depth, motion.isHeld = 4.0, 0.0, 0.0, [0.0] * 4, False
+    scene.motion = motion
     for name, value in fields.items():
         setattr(scene, name, value)
     return scene, WHAT.LoadScene

@@ -296,6 +296,9 @@ void AttemptControl::end_server(const QString& tool) {
 void AttemptControl::advance(double dt_s) {
   view_ = attempt_.view();
   const bool are_on = view_.phase == attempt::AttemptPhase::kReady || view_.phase == attempt::AttemptPhase::kInBody;
+  needle_.set_motion(view_.motion);
+  probe_.set_motion(view_.motion);
+  hand_.set_motion(view_.motion);
   if ((!are_on || !is_led_[0]) && view_.needle.is_known && view_.phase != attempt::AttemptPhase::kFinishing) {
     // The hands wait at the poses of the tools, to avoid a jump when the forces return.
     needle_.put(view_.needle.X_PN);
@@ -350,6 +353,7 @@ void AttemptControl::poll_shot() {
 
 void AttemptControl::show_tools(double dt_s) {
   ToolsShown tools;
+  tools.motion = view_.motion;
   const attempt::NeedleView& needle = view_.needle;
   if (needle.is_known) {
     tools.shaft_P = needle.shaft_P;

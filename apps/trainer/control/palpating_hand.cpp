@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attempt/tools/pointer_tools.h"
+#include "anatomy/skin_now.h"
 #include "cases/needle_geometry.h"
 #include "panels/palpation_tag.h"
 #include "ui_kit/parts.h"
@@ -19,7 +19,8 @@ constexpr double kClick_px = 4.0;  ///< A longer way between press and release i
 constexpr int kBesideFinger_px = 18;
 
 /// First point of the skin along a ray from outside, by steps of the distance to it.
-std::optional<Vec3> find_skin(const anatomy::VirtualPatient& patient, const Vec3& from_P, const Vec3& along_P) {
+std::optional<Vec3> find_skin(const anatomy::VirtualPatient& patient, const motion::PatientMotion& motion,
+                              const Vec3& from_P, const Vec3& along_P) {
   constexpr double kFarthest_mm = 3000.0, kLeast_mm = 0.3, kMost_mm = 6.0;
   const volume::GridGeometry& grid = patient.skin_distance_mm.geometry;
   for (double gone_mm = 0.0; gone_mm < kFarthest_mm;) {
@@ -32,7 +33,7 @@ std::optional<Vec3> find_skin(const anatomy::VirtualPatient& patient, const Vec3
       gone_mm += kMost_mm;
       continue;
     }
-    const double distance_mm = volume::sample_linear(patient.skin_distance_mm, p_P);
+    const double distance_mm = volume::sample_linear(patient.skin_distance_mm, motion.to_rest(p_P));
     if (distance_mm < kLeast_mm) return distance_mm > -kMost_mm ? std::optional(p_P) : std::nullopt;
     gone_mm += std::clamp(distance_mm, kLeast_mm, kMost_mm);
   }
@@ -67,7 +68,7 @@ void PalpatingHand::set_active(bool is_active) {
   is_active_ = is_active && scene_ != nullptr;
   view_.setMouseTracking(is_active_);
   pressed_at_.reset();
-  tag_->setVisible(is_active_ && p_P_.has_value());
+  tag_->setVisible(is_active_ && p_A_.has_value());
 }
 
 bool PalpatingHand::eventFilter(QObject* /*watched*/, QEvent* event) {
@@ -100,55 +101,58 @@ void PalpatingHand::advance() {
   if (!is_active_ || !pointer_) return;
   const auto [eye_P, along_P] = view_.ray_at(*pointer_);
   pointer_.reset();
-  if (const auto p_P = find_skin(*open_->the_case.patient, eye_P, along_P)) move_to(*p_P);
+  if (const auto p_P = find_skin(*open_->the_case.patient, motion_, eye_P, along_P)) move_to(*p_P);
 }
 
 void PalpatingHand::move_to(const Vec3& p_P) {
-  const anatomy::VirtualPatient& patient = *open_->the_case.patient;
-  p_P_ = attempt::nearest_skin_point(patient, p_P);
-  inward_P_ = attempt::skin_inward(patient, *p_P_);
-  felt_ = haptics::palpate(*scene_, *p_P_, inward_P_);
+  const anatomy::SkinNow skin(*open_->the_case.patient, motion_);
+  const Vec3 skin_P = skin.nearest(p_P);
+  p_A_ = motion_.to_rest(skin_P);
+  felt_ = haptics::palpate({*scene_, motion_}, skin_P, skin.inward(skin_P));
   show_tag();
 }
 
 void PalpatingHand::show_tag() {
   tag_->show_felt(felt_, says_below_);
-  const QPointF at = view_.position_of(*p_P_);
+  const QPointF at = view_.position_of(motion_.to_now(*p_A_));
   const int left = static_cast<int>(at.x()) + kBesideFinger_px, top = static_cast<int>(at.y()) + kBesideFinger_px;
   tag_->move(std::clamp(left, 0, std::max(0, view_.width() - tag_->width())),
              std::clamp(top, 0, std::max(0, view_.height() - tag_->height())));
 }
 
 void PalpatingHand::glide(double right_mm, double down_mm) {
-  if (!is_active_ || !p_P_) return;
+  if (!is_active_ || !p_A_) return;
   const scene::CameraView& camera = view_.view();
   const Vec3 shift_P = right_mm * camera.right_P() - down_mm * camera.up_P;
-  move_to(*p_P_ + shift_P - inward_P_.dot(shift_P) * inward_P_);
+  const Vec3 p_P = motion_.to_now(*p_A_), inward_P = anatomy::SkinNow(*open_->the_case.patient, motion_).inward(p_P);
+  move_to(p_P + shift_P - inward_P.dot(shift_P) * inward_P);
 }
 
 void PalpatingHand::set_mark() {
-  if (is_active_ && p_P_) marks_P_.push_back(*p_P_);
+  if (is_active_ && p_A_) marks_A_.push_back(*p_A_);
 }
 
 void PalpatingHand::undo_mark() {
-  if (!marks_P_.empty()) marks_P_.pop_back();
+  if (!marks_A_.empty()) marks_A_.pop_back();
 }
 
 void PalpatingHand::add_to(ToolsShown& tools) const {
-  tools.skin_marks_P = marks_P_;
-  if (!is_active_ || !p_P_) return;
+  tools.skin_marks_P.clear();
+  for (const Vec3& mark_A : marks_A_) tools.skin_marks_P.push_back(motion_.to_now(mark_A));
+  if (!is_active_ || !p_A_) return;
   const QColor color = PalpationTag::color_of(haptics::hardness_of(felt_));
-  tools.finger = scene::Fingertip{*p_P_,
-                                  inward_P_,
+  const Vec3 p_P = motion_.to_now(*p_A_);
+  tools.finger = scene::Fingertip{p_P,
+                                  anatomy::SkinNow(*open_->the_case.patient, motion_).inward(p_P),
                                   {static_cast<std::uint8_t>(color.red()), static_cast<std::uint8_t>(color.green()),
                                    static_cast<std::uint8_t>(color.blue())}};
 }
 
 void PalpatingHand::add_facts(QVariantMap& facts) const {
-  facts[QStringLiteral("palpation")] = is_active_ && p_P_ ? PalpationTag::words_of(felt_, says_below_) : QString();
+  facts[QStringLiteral("palpation")] = is_active_ && p_A_ ? PalpationTag::words_of(felt_, says_below_) : QString();
   facts[QStringLiteral("palpation_mm")] = felt_.pressed_mm;
   facts[QStringLiteral("palpation_n_per_mm")] = felt_.stiffness_n_per_mm;
-  facts[QStringLiteral("skin_marks")] = static_cast<int>(marks_P_.size());
+  facts[QStringLiteral("skin_marks")] = static_cast<int>(marks_A_.size());
 }
 
 }  // namespace trocar::trainer

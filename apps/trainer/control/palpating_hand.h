@@ -29,6 +29,8 @@ class PalpatingHand : public QObject {
   /// Empty: a patient in whom nothing can be felt, with the reason.
   const QString& failure() const noexcept { return failure_; }
   void set_active(bool is_active);
+  /// Where the patient is: finger and marks move with the skin.
+  void set_motion(const motion::PatientMotion& motion) { motion_ = motion; }
   bool is_active() const noexcept { return is_active_; }
   /// Moves the finger over the skin; mm in the directions of the view.
   void glide(double right_mm, double down_mm);
@@ -53,10 +55,10 @@ class PalpatingHand : public QObject {
   PalpationTag* tag_;
   bool is_active_ = false;
   std::optional<QPointF> pointer_, pressed_at_;  ///< In the view; pointer_: not felt yet.
-  std::optional<Vec3> p_P_;                      ///< Place of the finger on the skin.
-  Vec3 inward_P_ = Vec3::UnitY();
+  motion::PatientMotion motion_;
+  std::optional<Vec3> p_A_;  ///< Place of the finger on the skin, at rest, as the marks.
   haptics::Palpation felt_;
-  std::vector<Vec3> marks_P_;
+  std::vector<Vec3> marks_A_;
 };
 
 }  // namespace trocar::trainer

@@ -222,6 +222,7 @@ Pose ReplayControl::transducer_at(double time_s) const {
 void ReplayControl::show_at(double time_s, bool is_moving) {
   const telemetry::TickSample& sample = replay_.at(time_s);
   ToolsShown tools;
+  tools.motion = replay_.motion_at(time_s);
   tools.shaft_P = replay_.shaft_at(time_s);
   tools.X_PN = telemetry::felt_needle(sample);
   tools.focus_P = sample.depth_mm > 0.0 ? sample.tip_mm : open_->the_case.plan.line_P.b;
@@ -245,8 +246,11 @@ void ReplayControl::show_xray(double time_s) {
   const tasks::Action* const wire =
       moment && moment->image_s ? tasks::find_wire(replay_.session().actions, *moment->image_s) : nullptr;
   const Vec3 axis_P = wire != nullptr ? replay_.at(wire->time_s).axis : Vec3::UnitZ();
-  page_.xray().set_wire(wire != nullptr ? std::optional(Segment{wire->tip_P, wire->tip_P + wire->amount * axis_P})
-                                        : std::nullopt);
+  const motion::PatientMotion motion = replay_.motion_at(moment && moment->image_s ? *moment->image_s : time_s);
+  page_.xray().set_motion(motion);
+  std::optional<Segment> wire_P;
+  if (wire != nullptr) wire_P.emplace(motion.to_now(wire->tip_A), motion.to_now(wire->tip_A) + wire->amount * axis_P);
+  page_.xray().set_wire(wire_P);
   page_.xray().show_moment(moment, std::move(shaft_P));
 }
 

@@ -33,8 +33,8 @@ bool are_same(const std::optional<scene::Fingertip>& a, const std::optional<scen
 }  // namespace
 
 bool look_same(const ToolsShown& a, const ToolsShown& b) {
-  return are_same(a.finger, b.finger) && are_near(a.skin_marks_P, b.skin_marks_P) && are_near(a.shaft_P, b.shaft_P) &&
-         are_near(a.X_PN, b.X_PN) && a.X_PT.has_value() == b.X_PT.has_value() &&
+  return a.motion.is_same_place(b.motion) && are_same(a.finger, b.finger) && are_near(a.skin_marks_P, b.skin_marks_P) &&
+         are_near(a.shaft_P, b.shaft_P) && are_near(a.X_PN, b.X_PN) && a.X_PT.has_value() == b.X_PT.has_value() &&
          (!a.X_PT || are_near(*a.X_PT, *b.X_PT)) && are_same(a.goal_P, b.goal_P) && are_same(a.stylet_P, b.stylet_P) &&
          are_same(a.core_P, b.core_P) && are_same(a.throw_P, b.throw_P) && are_same(a.notch_P, b.notch_P) &&
          are_same(a.wire_P, b.wire_P) && a.focus_P.has_value() == b.focus_P.has_value() &&

@@ -5,12 +5,14 @@
 
 #include "geometry/pose.h"
 #include "geometry/segment.h"
+#include "motion/patient_motion.h"
 #include "scene/fingertip.h"
 
 namespace trocar::trainer {
 
 /// Poses of the tools in one frame. Coordinates in P.
 struct ToolsShown {
+  motion::PatientMotion motion;     ///< Where the patient is.
   std::vector<Vec3> shaft_P;        ///< Hub to tip; empty: no needle.
   Pose X_PN;                        ///< Pose of the needle's tip.
   std::optional<Segment> goal_P;    ///< Needle at the hand's pose, if the hand is ahead of the needle.

@@ -10,13 +10,14 @@
 #include "geometry/pose.h"
 #include "link/limits.h"
 #include "link/server_state.h"
+#include "motion/motion_clock.h"
 #include "realtime/loop_statistics.h"
 #include "telemetry/needle_shape.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::link {
 
-inline constexpr std::uint32_t kLinkVersion = 5;  ///< Both sides must have the same version.
+inline constexpr std::uint32_t kLinkVersion = 6;  ///< Both sides must have the same version.
 
 // From a client.
 
@@ -41,6 +42,8 @@ struct LoadScene {
   std::string patient;  ///< Folder (on the server's machine), or name of an embedded patient.
   std::uint64_t patient_seed = 1;
   std::string patient_hash;         ///< A patient with another hash is refused; empty: any hash.
+  std::string motion_hash;          ///< A patient with another motion model is refused; empty: any, or none.
+  motion::MotionDrive motion;       ///< begins_s in the server's clock.
   std::string tool = "needle";      ///< needle | probe | finger
   double needle_length_mm = 150.0;  ///< Grip to tip. The needle_ fields are those of NeedleGeometry.
   double needle_radius_mm = 0.635;
@@ -73,6 +76,7 @@ struct SetParameters {
   std::optional<double> coupling_stiffness_n_per_mm = {};
   std::optional<double> coupling_damping_ns_per_mm = {};
   std::optional<bool> has_bending = {};
+  std::optional<motion::MotionDrive> motion = {};  ///< begins_s in the server's clock.
   bool operator==(const SetParameters&) const = default;
 };
 

@@ -37,8 +37,8 @@ class DevicePause {
 
 std::size_t text_bytes(const ControlJob& job) {
   if (const auto* scene = std::get_if<link::LoadScene>(&job.what)) {
-    return scene->task.size() + scene->patient.size() + scene->patient_hash.size() + scene->tool.size() +
-           scene->force_model.size() + scene->tissues_toml.size();
+    return scene->task.size() + scene->patient.size() + scene->patient_hash.size() + scene->motion_hash.size() +
+           scene->tool.size() + scene->force_model.size() + scene->tissues_toml.size();
   }
   std::size_t bytes = 0;
   if (const auto* parameters = std::get_if<link::SetParameters>(&job.what)) {

@@ -33,6 +33,7 @@ Status apply_options(const link::SetParameters& request, haptics::HapticOptions&
   coupling.stiffness_n_per_mm = request.coupling_stiffness_n_per_mm.value_or(coupling.stiffness_n_per_mm);
   coupling.damping_ns_per_mm = request.coupling_damping_ns_per_mm.value_or(coupling.damping_ns_per_mm);
   options.has_bending = request.has_bending.value_or(options.has_bending);
+  options.motion = request.motion.value_or(options.motion);
   return {};
 }
 
@@ -71,6 +72,9 @@ Result<std::shared_ptr<const anatomy::VirtualPatient>> SceneBuilder::patient_for
       return fail("the server's patient differs from the client's (different content hash)", request.patient,
                   "give both the same folder and version");
   }
+  if (!request.motion_hash.empty() && anatomy::motion_hash(*patient) != request.motion_hash)
+    return fail("the motion of the server's patient differs from that of the client's (different hash)",
+                request.patient, "give both the same folder and version");
   return patient;
 }
 
@@ -88,6 +92,7 @@ Result<SceneBuilder::Parts> SceneBuilder::parts_for(const link::LoadScene& reque
   TROCAR_TRY(parts.options.tool, haptics::parse_tool(request.tool));
   TROCAR_TRY(parts.options.force_model, haptics::parse_force_model(request.force_model));
   parts.options.seed = request.seed;
+  parts.options.motion = request.motion;
   return parts;
 }
 

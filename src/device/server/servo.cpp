@@ -133,7 +133,8 @@ Servo::Wanted Servo::feel(const Sensed& sensed, const ServoInput& input, telemet
   const haptics::HapticScene& scene = *input.scene->scene;
   const haptics::HapticOutput output =
       tick(tick_,
-           {input.now_s, std::min(input.dt_s, haptics::kMaxDt_s), haptics::tool_pose(scene, X_WS), input.is_stylet_in},
+           {input.now_s, std::min(input.dt_s, haptics::kMaxDt_s), haptics::tool_pose(scene, X_WS), input.is_stylet_in,
+            scene.motion_at(input.now_s)},
            scene);
   sample = output.sample;
 
@@ -171,7 +172,8 @@ void Servo::note_shape(const ServoInput& input, ServoRecord& record) noexcept {
   if (input.scene == nullptr || input.scene->scene->options.tool != haptics::Tool::kNeedle) return;
   if (input.now_s >= shape_s_ && input.now_s < shape_s_ + kShapeEvery_s - kRounding_s) return;
   shape_s_ = input.now_s;
-  record.shape = haptics::needle_shape(tick_.needle, *input.scene->scene, input.is_stylet_in);
+  const haptics::HapticScene& scene = *input.scene->scene;
+  record.shape = haptics::needle_shape(tick_.needle, {scene, scene.motion_at(input.now_s)}, input.is_stylet_in);
   record.shape->time_s = record.sample.time_s;
 }
 

@@ -72,7 +72,7 @@ struct PatientScene::Impl {
     const volume::FloatGrid& skin =
         patient ? patient->skin_distance_mm : kNoSkin;  // a reference: a conditional of values would copy it
     const Vec3 begin_P = path_P ? path_P->a : Vec3::Zero();
-    guides.set_path(path_P, {entry_centre_P.value_or(begin_P), entry_radius_mm}, skin);
+    guides.set_path(path_P, {entry_centre_P.value_or(begin_P), entry_radius_mm}, skin, motion);
     has_changed = true;
   }
   void place_camera(int rows);
@@ -87,6 +87,7 @@ struct PatientScene::Impl {
   unsigned long abort_tag = 0;
   detail::CallersBreak frame_break;
   std::shared_ptr<const anatomy::VirtualPatient> patient;
+  motion::PatientMotion motion;
   std::string target_name, around_name;
   std::optional<StructurePreset> structure_preset;
   std::optional<Segment> path_P;
@@ -190,6 +191,7 @@ void PatientScene::show_patient(std::shared_ptr<const anatomy::VirtualPatient> p
   s.target_name = aim.target_name;
   s.around_name = aim.around_name;
   s.structure_preset.reset();
+  set_motion({});
   s.surfaces.clear();
   s.planes.set_patient(patient.get());
   s.guides.set_landmarks(patient->landmarks);
@@ -208,6 +210,16 @@ void PatientScene::add_surfaces(std::shared_ptr<const std::vector<anatomy::Named
   if (s.structure_preset)
     for (StructureInfo& info : structures) info.opacity = preset_opacity(info, *s.structure_preset, s.around_name);
   s.surfaces.add(std::move(structures), std::move(meshes), table);
+}
+
+void PatientScene::set_motion(const motion::PatientMotion& motion) {
+  Impl& s = *impl_;
+  if (motion.is_same_place(s.motion)) return;
+  s.motion = motion;
+  s.surfaces.set_motion(motion);
+  s.planes.set_motion(motion);
+  s.guides.set_motion(motion);
+  s.lay_path();
 }
 
 bool PatientScene::is_ready() const noexcept {
@@ -422,7 +434,10 @@ std::optional<Vec3> PatientScene::pick(double right, double down) {
   std::optional<double> nearest_mm;
   for (const StructureInfo& structure : s.surfaces.structures()) {
     if (structure.opacity <= 0.0 || structure.is_withheld) continue;
-    const auto hit_mm = detail::first_hit_mm(s.surfaces.mesh_P(structure.name), view.eye_P, ray_P);
+    const TriangleMesh& mesh_A = s.surfaces.mesh_A(structure.name);
+    const auto hit_mm = s.motion.is_rest()
+                            ? detail::first_hit_mm(mesh_A, view.eye_P, ray_P)
+                            : detail::first_hit_mm(detail::moved_mesh(mesh_A, s.motion), view.eye_P, ray_P);
     if (hit_mm && (!nearest_mm || *hit_mm < *nearest_mm)) nearest_mm = hit_mm;
   }
   return nearest_mm ? std::optional<Vec3>(view.eye_P + *nearest_mm * ray_P) : std::nullopt;

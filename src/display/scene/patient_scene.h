@@ -12,6 +12,7 @@
 
 #include "core/result.h"
 #include "geometry/pose.h"
+#include "motion/patient_motion.h"
 #include "scene/camera.h"
 #include "scene/detail_policy.h"
 #include "scene/fingertip.h"
@@ -25,7 +26,8 @@
 
 namespace trocar::scene {
 
-/// A patient with tools and guidance, drawn off-screen. All coordinates are in P (mm). All calls must come from one
+/// A patient with tools and guidance, drawn off-screen. All coordinates are in P (mm), those of
+/// path, entry zone, target and landmarks in A: they move with the patient. All calls must come from one
 /// thread; background threads prepare surfaces and volume, which are drawn when they are ready.
 class PatientScene {
  public:
@@ -41,6 +43,8 @@ class PatientScene {
                     std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes, std::optional<Vec3> target_P = {});
   /// More surfaces of the same patient, with new names. They get the opacity of the last preset.
   void add_surfaces(std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes);
+  /// Where the patient is: surfaces, planes and guidance move. The volume view stays at rest.
+  void set_motion(const motion::PatientMotion& motion);
   bool is_ready() const noexcept;  ///< The surfaces are loaded.
   void finish_loading();           ///< Waits for surfaces and volume.
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "motion/rest_plane.h"
+
 namespace trocar::slices {
 namespace {
 
@@ -69,12 +71,17 @@ void hide_lesions(const anatomy::LabelTable& table, std::span<std::uint8_t> ids)
 }
 
 void draw_labels(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
-                 SliceBuffers& buffers, volume::RgbImage& picture) {
+                 SliceBuffers& buffers, volume::RgbImage& picture, bool is_moved) {
   // A row of "no label" precedes the first row and follows the last one.
   const auto columns = static_cast<std::size_t>(plane.columns);
   const auto rows = static_cast<std::size_t>(plane.rows);
   buffers.ids.assign((rows + 2) * columns, 0);
-  volume::sample_slice_nearest(patient.labels, plane, 0, std::span(buffers.ids).subspan(columns, rows * columns));
+  const std::span<std::uint8_t> ids_of_plane = std::span(buffers.ids).subspan(columns, rows * columns);
+  if (is_moved)
+    for (std::size_t n = 0; n < ids_of_plane.size(); ++n)
+      ids_of_plane[n] = volume::sample_nearest(patient.labels, buffers.rest_A[n].cast<double>(), std::uint8_t{0});
+  else
+    volume::sample_slice_nearest(patient.labels, plane, 0, ids_of_plane);
   if (style.hides_lesions) hide_lesions(patient.label_table, buffers.ids);
   const Inks inks = inks_of(patient.label_table, style);
   for (std::size_t v = 0; v < rows; ++v) {
@@ -91,7 +98,7 @@ bool is_drawn(const anatomy::Label& label) noexcept {
 }
 
 void paint_slice(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
-                 SliceBuffers& buffers, volume::RgbImage& picture) {
+                 SliceBuffers& buffers, volume::RgbImage& picture, const motion::PatientMotion& motion) {
   constexpr float kAir_hu = -1024.0F;
   const std::size_t count = static_cast<std::size_t>(plane.columns) * static_cast<std::size_t>(plane.rows);
   picture.columns = plane.columns;
@@ -99,11 +106,16 @@ void paint_slice(const anatomy::VirtualPatient& patient, const volume::SlicePlan
   picture.pixels.resize(count);
   buffers.hu.resize(count);
   buffers.gray.resize(count);
-  volume::sample_slice(patient.ct, plane, kAir_hu, buffers.hu);
+  if (motion.is_rest()) {
+    volume::sample_slice(patient.ct, plane, kAir_hu, buffers.hu);
+  } else {
+    motion::rest_of_plane(motion, plane, buffers.rest_A);
+    volume::sample_points(patient.ct, buffers.rest_A, kAir_hu, buffers.hu);
+  }
   apply_window(buffers.hu, style.window, buffers.gray);
   for (std::size_t n = 0; n < count; ++n) picture.pixels[n].fill(buffers.gray[n]);
   const bool shows_labels = style.label_opacity > 0.0 || style.has_outlines;
-  if (shows_labels && !patient.labels.empty()) draw_labels(patient, plane, style, buffers, picture);
+  if (shows_labels && !patient.labels.empty()) draw_labels(patient, plane, style, buffers, picture, !motion.is_rest());
 }
 
 }  // namespace trocar::slices

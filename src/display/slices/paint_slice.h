@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
+#include "motion/patient_motion.h"
 #include "slices/window_level.h"
 #include "volume/image.h"
 #include "volume/sampling.h"
@@ -24,6 +25,7 @@ struct SliceBuffers {
   std::vector<float> hu;
   std::vector<std::uint8_t> gray;
   std::vector<std::uint8_t> ids;
+  std::vector<Vec3f> rest_A;
 };
 
 /// Labels that paint_slice draws: not fat, muscle and skin, which are the background of the structures.
@@ -31,9 +33,9 @@ bool is_drawn(const anatomy::Label& label) noexcept;
 
 /// Paints CT on a plane (trilinear, window/level) and over it the labels (nearest) in their colours, filled and
 /// outlined. Fat, muscle and skin are not painted, as they are the background of structures. The value outside of the
-/// volume is air. Sets the image size to that of the plane. Allocates only if an image is larger than the previous
-/// ones. One thread.
+/// volume is air. The plane is in the patient now; `motion` tells where its tissue is at rest. Sets the image size to
+/// that of the plane. Allocates only if an image is larger than the previous ones. One thread.
 void paint_slice(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
-                 SliceBuffers& buffers, volume::RgbImage& picture);
+                 SliceBuffers& buffers, volume::RgbImage& picture, const motion::PatientMotion& motion = {});
 
 }  // namespace trocar::slices

@@ -82,6 +82,12 @@ inline constexpr std::tuple kTickFields{
     TickField<GateFault, kInFlightRecord>{&TickSample::gate_fault, "gate_fault", {"gate_fault"}},
     TickField<double, kInFlightRecord>{&TickSample::gate_scale, "gate_scale", {"gate_scale"}},
     TickField<double, kInFlightRecord>{&TickSample::coupling_share, "coupling_share", {"coupling_share"}},
+    TickField<Vec3>{&TickSample::rest_tip_mm,
+                    "rest_tip_mm",
+                    {"rest_tip_x_mm", "rest_tip_y_mm", "rest_tip_z_mm"},
+                    TickLimit::kPosition},
+    TickField<Vec3>{
+        &TickSample::rest_axis, "rest_axis", {"rest_axis_x", "rest_axis_y", "rest_axis_z"}, TickLimit::kAxis},
     TickField<Quaternion, kSessionOnly>{&TickSample::device_rotation_wxyz,
                                         "device_rotation_wxyz",
                                         {"device_qw", "device_qx", "device_qy", "device_qz"}},

@@ -36,9 +36,10 @@ bool is_in_body(const TickSample& sample) noexcept {
   return sample.depth_mm > 0.0 && !is_on_skin;
 }
 
-Vec3 pierced_tip_mm(const TickSample& sample) noexcept {
+Vec3 pierced_rest_tip_mm(const TickSample& sample) noexcept {
   const bool is_loading = sample.phase == InsertionPhase::kLoading && sample.layer_displacement_mm > 0.0;
-  return is_loading ? Vec3(sample.tip_mm - (sample.layer_displacement_mm + kClear_mm) * sample.axis) : sample.tip_mm;
+  return is_loading ? Vec3(sample.rest_tip_mm - (sample.layer_displacement_mm + kClear_mm) * sample.rest_axis)
+                    : sample.rest_tip_mm;
 }
 
 NeedlePlace needle_place(const TickSample& sample) noexcept {

@@ -20,8 +20,8 @@ struct NeedlePlace {
 NeedlePlace needle_place(const TickSample& sample) noexcept;
 /// True if the tip is in the body: below the skin, and the skin has given way.
 bool is_in_body(const TickSample& sample) noexcept;
-/// Where the tip is in the resting anatomy as far as layers have given way: in front of a layer that it presses in.
-Vec3 pierced_tip_mm(const TickSample& sample) noexcept;
+/// Where the tip is in the anatomy at rest (A) as far as layers have given way: in front of a layer that it presses in.
+Vec3 pierced_rest_tip_mm(const TickSample& sample) noexcept;
 /// Pose of the virtual transducer, whose axis is y of T.
 Pose felt_probe(const TickSample& sample) noexcept;
 

@@ -44,7 +44,7 @@ inline constexpr LimitReason kLastLimitReason = LimitReason::kFault;
 const char* to_string(LimitReason reason) noexcept;
 
 /// The record of one haptic tick: `haptics` creates it, `link` transmits it, `training` scores it, `storage` stores it.
-/// Vectors in P. tick_fields.h describes the fields for all record formats.
+/// Vectors in P unless named otherwise. tick_fields.h describes the fields for all record formats.
 struct TickSample {
   double time_s = 0.0;
   Vec3 tip_mm = Vec3::Zero();        ///< Tip of the virtual needle.
@@ -77,9 +77,19 @@ struct TickSample {
   Vec3 device_tau_nmm = Vec3::Zero();      ///< Torque sent to the device, about S; zero if it has no torque motors.
   GateMode gate_mode = GateMode::kAbsent;  ///< Mode of the server's safety gate after this tick.
   GateFault gate_fault = GateFault::kNone;
-  double gate_scale = 1.0;      ///< 0..1, scale of safe start, fading and faults (physics.md G7); 1 without a gate.
+  double gate_scale = 1.0;  ///< 0..1, scale of safe start, fading and faults (physics.md G7); 1 without a gate.
+  /// tip_mm and axis in the anatomy at rest, frame A; the same if the patient does not move. What is judged by labels,
+  /// CT or a plan uses these.
+  Vec3 rest_tip_mm = Vec3::Zero();
+  Vec3 rest_axis = Vec3::UnitZ();
   double coupling_share = 1.0;  ///< 0..1, share of the coupling that the loop's period permits (physics.md G11).
 };
+
+/// For recordings of patients that do not move, and for tests.
+inline void set_at_rest(TickSample& sample) noexcept {
+  sample.rest_tip_mm = sample.tip_mm;
+  sample.rest_axis = sample.axis;
+}
 
 /// Resistance (N) of tip and shaft along the needle, for any force model: positive pushes the needle out. Excludes path
 /// constraint, weight and stick.

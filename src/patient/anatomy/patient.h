@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "anatomy/posture.h"
 #include "geometry/segment.h"
 #include "geometry/triangle_mesh.h"
+#include "motion/motion_model.h"
 #include "volume/grid.h"
 
 namespace trocar::anatomy {
@@ -37,7 +39,8 @@ struct Finding {
   std::optional<Vec3> place_P;  ///< Where to look; empty: it has no place.
 };
 
-/// The virtual patient: immutable once built. All volumes share one geometry; frame P (LPS, mm).
+/// The virtual patient: immutable once built. All volumes share one geometry; LPS, mm, at rest: frame A, which is P
+/// unless the patient moves (motion/patient_motion.h).
 struct VirtualPatient {
   std::string name;
   std::string description;
@@ -50,13 +53,20 @@ struct VirtualPatient {
   std::vector<Landmark> landmarks;
   std::vector<NeedlePath> paths;  ///< Expert paths.
   std::vector<Finding> repairs;   ///< What the build repaired in the segmentation.
-  std::string content_hash;       ///< Hash of CT, labels and label table (hash_patient).
+  /// How the anatomy moves; nullptr: it does not. Not a part of content_hash; it has a hash of its own.
+  std::shared_ptr<const motion::MotionModel> motion;
+  std::string content_hash;  ///< Hash of CT, labels and label table (hash_patient).
 };
 
 /// Content hash of CT, labels, geometry and label table.
 std::string hash_patient(const VirtualPatient& patient);
 
-/// Label at a point of P; nullptr where nothing is labelled or outside the volume.
+/// Hash of the patient's motion model; empty without one.
+inline std::string motion_hash(const VirtualPatient& patient) {
+  return patient.motion == nullptr ? std::string() : patient.motion->hash();
+}
+
+/// Label at a point of A; nullptr where nothing is labelled or outside the volume.
 const Label* find_label(const VirtualPatient& patient, const Vec3& p_P) noexcept;
 
 }  // namespace trocar::anatomy

@@ -16,12 +16,17 @@ Status check(const MotionDrive& drive) {
   return {};
 }
 
-MotionState state_at(const MotionDrive& drive, double time_s) noexcept {
+double phase_at(const MotionDrive& drive, double time_s) noexcept {
+  if (drive.is_held) return drive.held_phase;
+  const double breaths = (time_s - drive.begins_s) / drive.period_s;
+  return breaths - std::floor(breaths);
+}
+
+MotionState state_of_phase(const MotionDrive& drive, double phase, double time_s) noexcept {
   MotionState state;
   state.time_s = time_s;
-  const double breaths = (time_s - drive.begins_s) / drive.period_s;
-  state.phase = drive.is_held ? drive.held_phase : breaths - std::floor(breaths);
-  const double angle = 2.0 * std::numbers::pi * state.phase;
+  state.phase = phase;
+  const double angle = 2.0 * std::numbers::pi * phase;
   const double share = 0.5 * (1.0 - std::cos(angle));
   const double share_per_s = drive.is_held ? 0.0 : std::numbers::pi / drive.period_s * std::sin(angle);
   for (std::size_t i = 0; i < kMostDrivers; ++i) {

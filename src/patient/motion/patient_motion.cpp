@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace trocar::motion {
@@ -47,6 +48,29 @@ Vec3 PatientMotion::resting(const Vec3& p_P) const noexcept {
 Mat3 PatientMotion::jacobian(const Vec3& p_A) const noexcept {
   if (model_ == nullptr) return Mat3::Identity();
   return Mat3::Identity() + model_->field(model_->region_of(p_A), p_A, state_.drivers).gradient;
+}
+
+PatientMotion::Moved PatientMotion::moved_with_jacobian(const Vec3& p_A) const noexcept {
+  if (model_ == nullptr) return {p_A, Mat3::Identity()};
+  const MotionModel::Field here = model_->field(model_->region_of(p_A), p_A, state_.drivers);
+  return {p_A + here.displacement_mm, Mat3::Identity() + here.gradient};
+}
+
+double PatientMotion::most_shift_mm(const PatientMotion& other) const noexcept {
+  if (model_ != other.model_) return std::numeric_limits<double>::infinity();
+  if (model_ == nullptr) return 0.0;
+  double sum_mm = 0.0;
+  for (const MotionMode& mode : model_->parts().modes) {
+    const auto driver = static_cast<std::size_t>(mode.driver);
+    sum_mm += std::abs(state_.drivers[driver] - other.state_.drivers[driver]) * mode.displacement_mm.norm();
+  }
+  return sum_mm;
+}
+
+bool PatientMotion::is_finite() const noexcept {
+  const auto is_number = [](double value) { return std::isfinite(value); };
+  return is_number(state_.time_s) && is_number(state_.phase) && std::ranges::all_of(state_.drivers, is_number) &&
+         std::ranges::all_of(state_.rates_per_s, is_number);
 }
 
 Vec3 PatientMotion::velocity(const Vec3& p_A) const noexcept {

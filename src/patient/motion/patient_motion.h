@@ -21,7 +21,8 @@ class PatientMotion {
   PatientMotion() = default;  ///< At rest: both frames are the same.
   PatientMotion(const MotionModel* model, const MotionState& state) noexcept;
 
-  /// True if the frames are the same because the patient has no model. A patient that holds its breath has one.
+  /// True if the frames are the same because the patient has no model; it breathes all the same (phase()). A patient
+  /// that holds its breath has a model.
   bool is_rest() const noexcept { return model_ == nullptr; }
   double time_s() const noexcept { return state_.time_s; }
   double phase() const noexcept { return state_.phase; }
@@ -37,8 +38,23 @@ class PatientMotion {
   int region(const Vec3& p_A) const noexcept { return model_ == nullptr ? 0 : model_->region_of(p_A); }
   /// d to_now / d p_A, determinant > 0.
   Mat3 jacobian(const Vec3& p_A) const noexcept;
+  /// Both at once.
+  struct Moved {
+    Vec3 p_P;
+    Mat3 jacobian;
+  };
+  Moved moved_with_jacobian(const Vec3& p_A) const noexcept;
   /// Velocity in P (mm/s) of the tissue that rests at p_A.
   Vec3 velocity(const Vec3& p_A) const noexcept;
+
+  /// No point of the tissue is further (mm) from its place in another motion; infinite if the models differ.
+  double most_shift_mm(const PatientMotion& other) const noexcept;
+
+  bool is_same_place(const PatientMotion& other) const noexcept {
+    return model_ == other.model_ && (model_ == nullptr || state_.drivers == other.state_.drivers);
+  }
+  /// False for a state with a number that is not finite.
+  bool is_finite() const noexcept;
 
   /// A small material line (a direction along tissue) at p_A, now: J v.
   Vec3 line_to_now(const Vec3& p_A, const Vec3& v_A) const noexcept;

@@ -186,6 +186,7 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
   if (options.tool == Tool::kNeedle && options.force_model != ForceModel::kInsertion &&
       tissues.transfer.knot_count == 0)
     return fail("has no transfer functions, which the proxy needs", "tissue table", "add [transfer] to it");
+  TROCAR_TRY_STATUS(motion::check(options.motion));
   auto scene = std::make_shared<HapticScene>();
   scene->patient = std::move(patient);
   scene->needle = needle;

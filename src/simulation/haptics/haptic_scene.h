@@ -15,6 +15,8 @@
 #include "haptics/insertion/path_constraint.h"
 #include "haptics/needle_geometry.h"
 #include "haptics/proxy/needle_beam.h"
+#include "motion/motion_clock.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::haptics {
 
@@ -58,8 +60,9 @@ struct HapticOptions {
   PathConstraintParams constraint;
   bool has_stick = true;  ///< Karnopp holding force (physics.md F3).
   bool has_weight_compensation = true;
-  bool has_bending = true;  ///< Proxy and combined: false keeps the shaft straight.
-  std::uint64_t seed = 1;   ///< Seed of the friction's fluctuation.
+  bool has_bending = true;     ///< Proxy and combined: false keeps the shaft straight.
+  std::uint64_t seed = 1;      ///< Seed of the friction's fluctuation.
+  motion::MotionDrive motion;  ///< What drives the patient's motion, in the time of the ticks.
 };
 
 inline constexpr int kMaxTissues = 32;
@@ -112,6 +115,21 @@ struct HapticScene {
   /// along +z of S, face.reach_mm from the stylus origin.
   Pose X_SN;
   Vec3 gravity_P = Vec3::UnitY();  ///< Unit, downwards: a supine patient lies on +y.
+
+  /// Where the patient is at a time of the ticks; at rest, in phase 0, without a motion model or if nothing drives it.
+  /// Real-time safe.
+  motion::PatientMotion motion_at(double time_s) const noexcept {
+    return moves() ? motion::PatientMotion(patient->motion.get(), motion::state_at(options.motion, time_s))
+                   : motion::PatientMotion();
+  }
+  /// Where it was at a recorded tick, to the bit. Real-time safe.
+  motion::PatientMotion motion_of(const telemetry::TickSample& sample) const noexcept {
+    if (!moves()) return {};
+    return {patient->motion.get(), motion::state_of_phase(options.motion, sample.breathing, sample.time_s)};
+  }
+  bool moves() const noexcept {
+    return patient != nullptr && patient->motion != nullptr && options.motion.depth != motion::MotionModel::Scalars{};
+  }
 };
 
 /// Checks every number and builds the scene. Errors: coupling or constraint stiffer than the device, numbers out of

@@ -13,6 +13,8 @@ namespace {
 constexpr std::string_view kForceModel = "force_model";
 constexpr std::string_view kOfConstraint = "constraint.";
 
+static_assert(motion::kMostDrivers == 4, "the list of options names each driver");
+
 /// The single list of options and device numbers: calls visit(name, field) for each; a field is a double or a bool.
 template <class Options, class Device, class Visitor>
 void visit_numbers(Options& options, Device& device, Visitor&& visit) {
@@ -26,6 +28,14 @@ void visit_numbers(Options& options, Device& device, Visitor&& visit) {
   visit("stick", options.has_stick);
   visit("weight_compensation", options.has_weight_compensation);
   visit("bending", options.has_bending);
+  visit("motion.period", options.motion.period_s);
+  visit("motion.begins", options.motion.begins_s);
+  visit("motion.held", options.motion.is_held);
+  visit("motion.held_phase", options.motion.held_phase);
+  visit("motion.depth_1", options.motion.depth[0]);
+  visit("motion.depth_2", options.motion.depth[1]);
+  visit("motion.depth_3", options.motion.depth[2]);
+  visit("motion.depth_4", options.motion.depth[3]);
   visit("device.peak_force", device.peak_force_n);
   visit("device.peak_torque", device.peak_torque_nmm);
   visit("device.peak_roll", device.peak_roll_nmm);

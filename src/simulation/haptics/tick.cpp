@@ -78,6 +78,7 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
   sample.tau_nmm = step.held_P.torque_nmm + weight.torque_nmm;
   sample.device_mm = input.tool.p_mm;
   sample.device_rotation_wxyz = input.tool.rotation_wxyz;
+  note_rest(input.motion, sample);
   sample.contact_to_puncture_mm = state.needle.path.contact_to_puncture_P;
 
   EventList events(sample);

@@ -33,6 +33,7 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   sample.device_mm = input.tool.p_mm;
   sample.device_rotation_wxyz = input.tool.rotation_wxyz;
   sample.breathing = input.motion.phase();
+  note_rest(input.motion, sample);
 
   EventList events(sample);
   if (step.has_jumped) events.add(telemetry::LimitReason::kJumped);

@@ -4,6 +4,7 @@
 
 #include "core/files/data_dir.h"
 #include "core/log.h"
+#include "motion/motion_clock.h"
 #include "ultrasound/doppler/flow_table.h"
 #include "ultrasound/doppler/vessel_flow.h"
 
@@ -17,7 +18,9 @@ xray::BloodVelocity contrast_blood(const anatomy::VirtualPatient& patient) {
     log_info("contrast agent is not carried along by blood: {}", flow.error().text());
     return {};
   }
-  return [flow = *std::move(flow)](const Vec3& p_P, double time_s) { return flow->velocity_P(p_P, time_s); };
+  return [flow = *std::move(flow)](const Vec3& p_A, double time_s) {
+    return flow->velocity_A(p_A, time_s, motion::state_at({}, time_s).phase);
+  };
 }
 
 }  // namespace trocar::cases

@@ -24,6 +24,7 @@ link::LoadScene scene_request(const Case& the_case, const SceneChoice& choice) {
   request.patient = choice.patient_source;
   request.patient_seed = choice.patient_seed;
   request.patient_hash = the_case.patient->content_hash;
+  request.motion_hash = anatomy::motion_hash(*the_case.patient);
   request.tool = choice.tool;
   request.needle_length_mm = needle.length_mm;
   request.needle_radius_mm = needle.radius_mm;

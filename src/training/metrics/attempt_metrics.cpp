@@ -108,15 +108,15 @@ AttemptMetrics measure_attempt(const anatomy::VirtualPatient& patient, const ana
   metrics.has_entered = true;
   metrics.entries = entry.count;
   const telemetry::TickSample& entered = samples[*entry.sample];
-  metrics.entry_offset_P = skin_crossing(patient, entered.tip_mm, entered.axis) - plan.line_P.a;
+  metrics.entry_offset_P = skin_crossing(patient, entered.rest_tip_mm, entered.rest_axis) - plan.line_P.a;
   const telemetry::TickSample& last = samples[*end];
   metrics.entry_s = entered.time_s;
   metrics.end_s = last.time_s;
-  metrics.axis_P = last.axis;
-  metrics.angle_deg = angle_between_rad(last.axis, plan.line_P.b - plan.line_P.a) * 180.0 / std::numbers::pi;
-  metrics.tip_P = last.tip_mm;
-  metrics.pierced_tip_P = telemetry::pierced_tip_mm(last);
-  metrics.target_offset_P = last.tip_mm - plan.line_P.b;
+  metrics.axis_P = last.rest_axis;
+  metrics.angle_deg = angle_between_rad(last.rest_axis, plan.line_P.b - plan.line_P.a) * 180.0 / std::numbers::pi;
+  metrics.tip_P = last.rest_tip_mm;
+  metrics.pierced_tip_P = telemetry::pierced_rest_tip_mm(last);
+  metrics.target_offset_P = last.rest_tip_mm - plan.line_P.b;
   metrics.travel_mm = inward_travel_mm(samples.first(*end + 1));
   for (const telemetry::TickSample& sample : samples.first(*end + 1))
     if (is_valid(sample)) metrics.deepest_mm = std::max(metrics.deepest_mm, sample.depth_mm);

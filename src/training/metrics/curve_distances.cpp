@@ -33,10 +33,10 @@ std::vector<Vec3> insertion_way(std::span<const telemetry::TickSample> samples, 
   while (first > 0 && samples[first - 1].depth_mm > 0.0) --first;
   detail::ThinPath way;
   for (std::size_t n = first; n <= *end; ++n)
-    if (samples[n].tip_mm.allFinite()) way.add(samples[n].tip_mm, samples[n].time_s);
+    if (samples[n].rest_tip_mm.allFinite()) way.add(samples[n].rest_tip_mm, samples[n].time_s);
   std::vector<Vec3> points_P;
   for (const detail::ThinPath::Point& point : way.points()) points_P.push_back(point.p_P);
-  if (samples[*end].tip_mm.allFinite()) points_P.push_back(samples[*end].tip_mm);
+  if (samples[*end].rest_tip_mm.allFinite()) points_P.push_back(samples[*end].rest_tip_mm);
   return points_P;
 }
 

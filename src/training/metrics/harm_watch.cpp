@@ -212,8 +212,8 @@ void HarmWatch::stay(double time_s) {
 }
 
 void HarmWatch::step(const Moment& moment) {
-  if (!std::isfinite(moment.time_s) || !moment.tip_P.allFinite() || !moment.axis_P.allFinite() || !moment.depth_mm ||
-      !std::isfinite(*moment.depth_mm))
+  if (!std::isfinite(moment.time_s) || !moment.tip_A().allFinite() || !moment.axis_A().allFinite() ||
+      !moment.depth_mm || !std::isfinite(*moment.depth_mm))
     return;
   if (moment.is_paused)
     for (std::size_t id = 0; id < stays_since_s_.size(); ++id) {
@@ -227,8 +227,8 @@ void HarmWatch::step(const Moment& moment) {
     tip_P_.reset();
     return;
   }
-  const Vec3 tip_P = moment.tip_P - moment.pressed_mm * moment.axis_P;
-  const Vec3 skin_P = tip_P - depth_mm * moment.axis_P;
+  const Vec3 tip_P = moment.tip_A() - moment.pressed_mm * moment.axis_A();
+  const Vec3 skin_P = tip_P - depth_mm * moment.axis_A();
   const bool has_moved =
       !tip_P_ || (tip_P - *tip_P_).norm() > kHarmMoved_mm || (skin_P - skin_P_).norm() > kHarmMoved_mm;
   if (has_moved) {
@@ -253,16 +253,16 @@ void HarmWatch::touch_bone(const Moment& moment) {
 }
 
 void HarmWatch::fire(const Moment& moment) {
-  if (!std::isfinite(moment.time_s) || !moment.tip_P.allFinite() || !moment.axis_P.allFinite()) return;
+  if (!std::isfinite(moment.time_s) || !moment.tip_A().allFinite() || !moment.axis_A().allFinite()) return;
   const auto id_at = [&](double beyond_mm) {
-    return volume::sample_nearest<std::uint8_t>(patient_->labels, moment.tip_P + beyond_mm * moment.axis_P, 0);
+    return volume::sample_nearest<std::uint8_t>(patient_->labels, moment.tip_A() + beyond_mm * moment.axis_A(), 0);
   };
   double throw_mm = 0.0;
   while (throw_mm < needle_.throw_mm && !is_bone_[id_at(throw_mm)]) throw_mm += kNotchStep_mm;
   const bool is_stopped = throw_mm < needle_.throw_mm;
   throw_mm = std::min(throw_mm, needle_.throw_mm);
   const double depth_mm = moment.depth_mm.value_or(0.0);
-  walk(moment.tip_P, moment.tip_P + throw_mm * moment.axis_P, depth_mm, moment.time_s, true);
+  walk(moment.tip_A(), moment.tip_A() + throw_mm * moment.axis_A(), depth_mm, moment.time_s, true);
   const auto bone = is_stopped ? id_at(throw_mm) : std::uint8_t{0};
   if (is_stopped && can_harm(harms_[bone])) {
     HarmEvent& event = event_of(bone, depth_mm + throw_mm, moment.time_s, true);
@@ -289,7 +289,7 @@ void HarmWatch::note(const tasks::Action& action) {
   std::bitset<256> in_bevel;
   bool has_vessel = false;
   for (double back_mm = 0.0; back_mm <= tasks::bevel_opening_mm(needle_); back_mm += kNotchStep_mm) {
-    const auto id = volume::sample_nearest<std::uint8_t>(patient_->labels, action.tip_P - back_mm * axis_P, 0);
+    const auto id = volume::sample_nearest<std::uint8_t>(patient_->labels, action.tip_A - back_mm * axis_P, 0);
     in_bevel[id] = event_of_[id] >= 0;
     has_vessel = has_vessel || (in_bevel[id] && is_vessel_[id]);
   }

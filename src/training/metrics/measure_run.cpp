@@ -70,11 +70,18 @@ bool MeasureRun::complete(Moment& moment) const {
     return false;
   if (before_ && !(moment.time_s > before_->time_s)) return false;
   moment.axis_P /= length;
+  if (moment.rest_tip_A && !moment.rest_tip_A->allFinite()) return false;
+  if (moment.rest_axis_A) {
+    const double rest_length = moment.rest_axis_A->norm();
+    if (!(rest_length > kLeastAxis && std::isfinite(rest_length))) return false;
+    *moment.rest_axis_A /= rest_length;
+  }
   drop_invalid_parts(moment);
   if (const anatomy::VirtualPatient* patient = context_.patient) {
     const double pierced_mm = std::max(moment.pressed_mm, detail::kInside_mm);
-    moment.label = volume::sample_nearest<std::uint8_t>(patient->labels, moment.tip_P - pierced_mm * moment.axis_P, 0);
-    if (!moment.depth_mm) moment.depth_mm = detail::depth_in_body_mm(*patient, moment.tip_P, moment.axis_P);
+    moment.label =
+        volume::sample_nearest<std::uint8_t>(patient->labels, moment.tip_A() - pierced_mm * moment.axis_A(), 0);
+    if (!moment.depth_mm) moment.depth_mm = detail::depth_in_body_mm(*patient, moment.tip_A(), moment.axis_A());
   }
   if (moment.depth_mm) moment.depth_mm = std::max(0.0, *moment.depth_mm);
   return true;
@@ -125,7 +132,7 @@ void MeasureRun::follow_entry(const Step& step) {
     }
   if (!enters) return;
   is_entered_ = true;
-  entry_P_ = now.tip_P - *now.depth_mm * now.axis_P;
+  entry_P_ = now.tip_A() - *now.depth_mm * now.axis_A();
 }
 
 void MeasureRun::follow_end(const Step& step) {
@@ -146,7 +153,7 @@ void MeasureRun::follow_end(const Step& step) {
   if (end_ && end_->depth_mm) return;
   double nearest_mm = std::numeric_limits<double>::infinity();
   for (const ExpertPath& path : context_.expert_paths)
-    nearest_mm = std::min(nearest_mm, (path.line_P.b - now.tip_P).norm());
+    nearest_mm = std::min(nearest_mm, (path.line_P.b - now.tip_A()).norm());
   if (std::isfinite(nearest_mm) && (!end_ || nearest_mm < nearest_mm_)) {
     nearest_mm_ = nearest_mm;
     take();
@@ -159,12 +166,12 @@ RunEnd MeasureRun::end() const {
   end.moment = end_;
   end.entry_P = end_entry_P_;
   if (end_->depth_mm && *end_->depth_mm > 0.0)
-    end.inserted_P = Segment{end_->tip_P - *end_->depth_mm * end_->axis_P, end_->tip_P};
+    end.inserted_P = Segment{end_->tip_A() - *end_->depth_mm * end_->axis_A(), end_->tip_A()};
   double nearest_mm = std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < context_.expert_paths.size(); ++n) {
     const Segment& line_P = context_.expert_paths[n].line_P;
     const double apart_mm =
-        end.inserted_P ? detail::piece_distance(*end.inserted_P, line_P).mean_mm : (end_->tip_P - line_P.b).norm();
+        end.inserted_P ? detail::piece_distance(*end.inserted_P, line_P).mean_mm : (end_->tip_A() - line_P.b).norm();
     if (apart_mm >= nearest_mm) continue;
     nearest_mm = apart_mm;
     end.expert = n;

@@ -14,7 +14,10 @@ struct Moment {
   double time_s = 0.0;  ///< Time of the recording.
   Vec3 tip_P = Vec3::Zero();
   Vec3 axis_P = Vec3::UnitZ();  ///< Hub to tip.
-  std::optional<Mat3> R_PN;     ///< Orientation of the needle with its roll: +y to the bevel's face.
+  /// The same in the anatomy at rest, frame A; missing: the patient does not move. What is compared with labels, CT or
+  /// a plan uses tip_A() and axis_A(); the motion of the hand and the image plane are in P.
+  std::optional<Vec3> rest_tip_A, rest_axis_A;
+  std::optional<Mat3> R_PN;  ///< Orientation of the needle with its roll: +y to the bevel's face.
   /// Depth of the tip below the resting skin along the shaft, 0 outside. MeasureRun finds it in the patient if it is
   /// missing.
   std::optional<double> depth_mm;
@@ -30,6 +33,9 @@ struct Moment {
   bool is_paused = false;
   /// How far the tip presses in a layer that has not given way: the needle is pierced to so much before the tip.
   double pressed_mm = 0.0;
+
+  const Vec3& tip_A() const noexcept { return rest_tip_A ? *rest_tip_A : tip_P; }
+  const Vec3& axis_A() const noexcept { return rest_axis_A ? *rest_axis_A : axis_P; }
 };
 
 /// What a haptic tick says of the needle; image, X-ray and pauses are left out.

@@ -28,6 +28,8 @@ constexpr double kMm_per_m = 1000.0;
 constexpr double kUnitTolerance = 1e-2;
 
 constexpr std::array kTip{"tip_x", "tip_y", "tip_z"};
+constexpr std::array kRestTip{"rest_tip_x", "rest_tip_y", "rest_tip_z"};
+constexpr std::array kRestAxis{"rest_axis_x", "rest_axis_y", "rest_axis_z"};
 constexpr std::array kAxis{"axis_x", "axis_y", "axis_z"};
 constexpr std::array kProbe{"probe_x", "probe_y", "probe_z"};
 constexpr std::array kProbeTurn{"probe_qw", "probe_qx", "probe_qy", "probe_qz"};
@@ -54,7 +56,7 @@ struct PoseLayout {
   PoseColumn time;
   PoseColumns<3> tip, axis;
   std::optional<PoseColumn> depth, force, contact;
-  std::optional<PoseColumns<3>> probe;
+  std::optional<PoseColumns<3>> probe, rest_tip, rest_axis;
   std::optional<PoseColumns<4>> probe_turn;
   std::optional<PoseColumns<kForces.size()>> forces;
   std::optional<std::size_t> phase, event;
@@ -130,7 +132,7 @@ class Header {
  private:
   static bool is_length(std::string_view name) {
     return name == "depth" || std::ranges::find(kTip, name) != kTip.end() ||
-           std::ranges::find(kProbe, name) != kProbe.end();
+           std::ranges::find(kProbe, name) != kProbe.end() || std::ranges::find(kRestTip, name) != kRestTip.end();
   }
 
   std::vector<std::string> names_;
@@ -146,6 +148,8 @@ Result<PoseLayout> find_layout(const Header& header, const std::string& where) {
   layout.time = *time;
   TROCAR_TRY(layout.tip, header.need_group(kTip, true));
   TROCAR_TRY(layout.axis, header.need_group(kAxis, false));
+  TROCAR_TRY(layout.rest_tip, header.find_group(kRestTip, true));
+  TROCAR_TRY(layout.rest_axis, header.find_group(kRestAxis, false));
   TROCAR_TRY(layout.probe, header.find_group(kProbe, true));
   TROCAR_TRY(layout.probe_turn, header.find_group(kProbeTurn, false));
   if (layout.probe.has_value() != layout.probe_turn.has_value())
@@ -273,6 +277,8 @@ struct PoseTable::Impl {
       reader.refuse(layout.time.name, "a row has no time", "remove the row, or give its time");
     moment.tip_P = reader.vector(layout.tip);
     moment.axis_P = reader.vector(layout.axis);
+    if (layout.rest_tip) moment.rest_tip_A = reader.vector(*layout.rest_tip);
+    if (layout.rest_axis) moment.rest_axis_A = reader.vector(*layout.rest_axis);
     moment.depth_mm = reader.number(layout.depth);
     moment.resistance_n = read_resistance(reader, layout, moment.axis_P);
     moment.X_PT = read_probe(reader, layout);

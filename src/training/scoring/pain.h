@@ -42,7 +42,7 @@ class PainWatch {
 
   const tasks::Task* task_;
   const anatomy::VirtualPatient* patient_;
-  std::vector<Vec3> numb_P_;  ///< Places of injections.
+  std::vector<Vec3> numb_A_;  ///< Places of injections.
   bool was_inside_ = false, has_hurt_skin_ = false;
   const anatomy::Label* touched_ = nullptr;
   double left_s_ = 0.0;  ///< Time of the last contact with `touched_`.

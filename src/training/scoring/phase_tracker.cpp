@@ -31,7 +31,7 @@ constexpr int kDirections = 6;           // about the line
 
 bool is_valid(const telemetry::TickSample& sample) noexcept {
   return std::isfinite(sample.time_s) && sample.tip_mm.allFinite() && sample.axis.allFinite() &&
-         std::isfinite(sample.depth_mm);
+         sample.rest_tip_mm.allFinite() && sample.rest_axis.allFinite() && std::isfinite(sample.depth_mm);
 }
 
 }  // namespace
@@ -116,7 +116,7 @@ bool PhaseTracker::Impl::holds_of_image(const Condition& condition, const PhaseM
 
 /// From the tip straight on to beside the target: every point and those around it at the margin.
 bool PhaseTracker::Impl::is_path_clear(const PhaseMoment& moment, double margin_mm) const {
-  const Vec3 &tip_P = moment.needle.tip_mm, &axis_P = moment.needle.axis;
+  const Vec3 &tip_P = moment.needle.rest_tip_mm, &axis_P = moment.needle.rest_axis;
   const double length_mm = std::clamp((plan_P.b - tip_P).dot(axis_P), 0.0, 300.0);
   const Vec3 u_P = axis_P.unitOrthogonal(), v_P = axis_P.cross(u_P);
   const auto is_free = [&](const Vec3& p_P) {
@@ -185,7 +185,7 @@ bool PhaseTracker::Impl::holds_of_actions(const Condition& condition, std::size_
 
 bool PhaseTracker::Impl::holds(const Condition& condition, std::size_t phase, const PhaseMoment& moment) const {
   const telemetry::TickSample& sample = moment.needle;
-  const Vec3 pierced_P = telemetry::pierced_tip_mm(sample);
+  const Vec3 pierced_P = telemetry::pierced_rest_tip_mm(sample);
   switch (condition.kind) {
     case ConditionKind::kProbeOnSkin:
     case ConditionKind::kTargetInImage:
@@ -193,18 +193,20 @@ bool PhaseTracker::Impl::holds(const Condition& condition, std::size_t phase, co
     case ConditionKind::kTipInImage:
       return holds_of_image(condition, moment);
     case ConditionKind::kTipOnSkin:
-      return sample.depth_mm > 0.0 || (!patient.skin_distance_mm.empty() &&
-                                       volume::sample_linear(patient.skin_distance_mm, sample.tip_mm) <= kOnSkin_mm);
+      return sample.depth_mm > 0.0 ||
+             (!patient.skin_distance_mm.empty() &&
+              volume::sample_linear(patient.skin_distance_mm, sample.rest_tip_mm) <= kOnSkin_mm);
     case ConditionKind::kAimsAtTarget: {
-      const Vec3 to_target_P = target_P - sample.tip_mm;
-      return to_target_P.norm() < 1.0 || kDegPerRad * angle_between_rad(sample.axis, to_target_P) <= condition.number;
+      const Vec3 to_target_P = target_P - sample.rest_tip_mm;
+      return to_target_P.norm() < 1.0 ||
+             kDegPerRad * angle_between_rad(sample.rest_axis, to_target_P) <= condition.number;
     }
     case ConditionKind::kPathClear:
       return is_path_clear(moment, condition.number);
     case ConditionKind::kInserted:
       return telemetry::is_in_body(sample) && sample.depth_mm >= condition.number;
     case ConditionKind::kTargetDistance: {
-      const Vec3 reach_P = pierced_P + needle.notch_middle_mm() * sample.axis;
+      const Vec3 reach_P = pierced_P + needle.notch_middle_mm() * sample.rest_axis;
       return (reach_P - target_P).norm() <= condition.number;
     }
     case ConditionKind::kTipIn: {
@@ -214,13 +216,13 @@ bool PhaseTracker::Impl::holds(const Condition& condition, std::size_t phase, co
     case ConditionKind::kPassed:
       return has_passed(condition.name);
     case ConditionKind::kThrowClear:
-      return take_core(task, patient, needle, sample.tip_mm, sample.axis).risks_in_throw.empty();
+      return take_core(task, patient, needle, sample.rest_tip_mm, sample.rest_axis).risks_in_throw.empty();
     case ConditionKind::kBevelToFibres: {
       const Mat3 R_PN = telemetry::device_pose(sample).R();
       return fibres_P && tasks::bevel_to_fibres_deg(R_PN, *fibres_P) <= condition.number;
     }
     case ConditionKind::kMoved:
-      return (sample.tip_mm - *begins[phase].tip_P).norm() >= condition.number;
+      return (sample.rest_tip_mm - *begins[phase].tip_P).norm() >= condition.number;
     default:
       return holds_of_actions(condition, phase);
   }
@@ -229,10 +231,10 @@ bool PhaseTracker::Impl::holds(const Condition& condition, std::size_t phase, co
 /// What the tip is in, and whether it came out.
 void PhaseTracker::Impl::note_place(const PhaseMoment& moment) {
   const telemetry::TickSample& sample = moment.needle;
-  const Vec3 pierced_P = telemetry::pierced_tip_mm(sample);
-  done.tip_P = sample.tip_mm;
+  const Vec3 pierced_P = telemetry::pierced_rest_tip_mm(sample);
+  done.tip_P = sample.rest_tip_mm;
   for (Begin& begin : begins)
-    if (!begin.tip_P) begin.tip_P = sample.tip_mm;
+    if (!begin.tip_P) begin.tip_P = sample.rest_tip_mm;
   if (!telemetry::is_in_body(sample)) {
     passed.reset();
     if (std::exchange(has_been_inside, false)) ++done.exits;

@@ -32,6 +32,7 @@ struct SessionInfo {
   std::string patient_name;
   std::string patient_source;  ///< As given on the command line: a folder, or an embedded patient's name.
   std::string patient_hash;
+  std::string motion_hash;         ///< Of the patient's motion model; empty: it had none, or an older program.
   std::uint64_t patient_seed = 1;  ///< Seed of an embedded patient.
   std::string operator_name;       ///< "expert", "constant-velocity:10" …
   std::string force_model = "insertion";

@@ -33,13 +33,13 @@ struct ActionRequest {
   double amount = 0.0;  ///< See ActionKind.
 };
 
-/// An action during an attempt. Frame P.
+/// An action during an attempt.
 struct Action {
   double time_s = 0.0;  ///< Session time.
   ActionKind kind = ActionKind::kAspirate;
   double amount = 0.0;
   Return result;              ///< kDrawStylet and kAspirate only.
-  Vec3 tip_P = Vec3::Zero();  ///< Needle's tip at that time.
+  Vec3 tip_A = Vec3::Zero();  ///< Needle's tip at that time, in the anatomy at rest.
   double depth_mm = 0.0;      ///< Of the tip below the skin.
 
   bool operator==(const Action& other) const noexcept = default;

@@ -51,6 +51,7 @@ class PatientViewEntry final : public View {
   void show_tools(const ToolContext& context) override {
     const tasks::Needle& needle = context.open.the_case.needle;
     const ToolsShown& tools = context.visible;
+    view_->scene().set_motion(tools.motion);
     view_->set_needle(tools.shaft_P, needle.outer_diameter_mm, scene::needle_model(needle.model));
     view_->set_needle_goal(tools.goal_P);
     view_->set_shot(tools.stylet_P, tools.core_P);

@@ -40,8 +40,8 @@ bool SliceMarks::eventFilter(QObject* watched, QEvent* event) {
 }
 
 void SliceMarks::set_target(const std::optional<Vec3>& p_P) {
-  if (p_P == target_P_) return;
-  target_P_ = p_P;
+  if (p_P == target_A_) return;
+  target_A_ = p_P;
   update();
 }
 
@@ -104,9 +104,10 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
   std::vector<QRectF> names;
   const QFontMetricsF metrics(painter.font());
   for (const anatomy::Landmark& landmark : landmarks_) {
-    const double away = away_mm(landmark.p_P);
+    const Vec3 p_P = view_->motion().to_now(landmark.p_P);
+    const double away = away_mm(p_P);
     if (away > kNear_mm) continue;
-    const QPointF at = view_->position_of(landmark.p_P);
+    const QPointF at = view_->position_of(p_P);
     painter.setPen(pen_of(theme().warning, 1.5, away < kInPlane_mm));
     painter.drawLine(at - QPointF(4, 4), at + QPointF(4, 4));
     painter.drawLine(at - QPointF(4, -4), at + QPointF(4, -4));
@@ -116,9 +117,10 @@ void SliceMarks::paintEvent(QPaintEvent* /*event*/) {
     names.push_back(place);
     draw_text(painter, place.topLeft() + QPointF(0.0, metrics.ascent()), name, painter.pen().color());
   }
-  if (target_P_) {
-    const QPointF at = view_->position_of(*target_P_);
-    painter.setPen(pen_of(theme().target, 2.0, away_mm(*target_P_) < kInPlane_mm));
+  if (target_A_) {
+    const Vec3 target_P = view_->motion().to_now(*target_A_);
+    const QPointF at = view_->position_of(target_P);
+    painter.setPen(pen_of(theme().target, 2.0, away_mm(target_P) < kInPlane_mm));
     painter.drawEllipse(at, 7.0, 7.0);
     painter.drawLine(at - QPointF(11, 0), at - QPointF(4, 0));
     painter.drawLine(at + QPointF(4, 0), at + QPointF(11, 0));

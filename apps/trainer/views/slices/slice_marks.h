@@ -45,7 +45,7 @@ class SliceMarks : public QWidget {
                   Qt::PenStyle style = Qt::SolidLine) const;
 
   SliceView* view_;
-  std::optional<Vec3> target_P_;
+  std::optional<Vec3> target_A_;
   std::optional<Segment> stylet_P_, core_P_, throw_P_, notch_P_;
   std::vector<Vec3> skin_marks_P_;
   std::vector<anatomy::Landmark> landmarks_;

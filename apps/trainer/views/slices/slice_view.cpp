@@ -182,7 +182,7 @@ void SliceView::set_needle_frame(const Pose& X_PN) {
 }
 
 void SliceView::set_paths(const std::optional<Segment>& path_P, std::vector<Segment> others_P) {
-  path_P_ = path_P;
+  path_A_ = path_P;
   other_paths_P_ = std::move(others_P);
   update();
 }
@@ -304,6 +304,13 @@ void SliceView::fit() {
   update();
 }
 
+void SliceView::set_motion(const motion::PatientMotion& motion) {
+  if (motion.is_same_place(motion_)) return;
+  motion_ = motion;
+  is_stale_ = true;
+  update();
+}
+
 void SliceView::redraw_picture() {
   if (!is_stale_ || !patient_) return;
   slices::SliceStyle style = style_;
@@ -312,7 +319,7 @@ void SliceView::redraw_picture() {
     style.label_opacity = 0.0;
     style.has_outlines = false;
   }
-  slices::paint_slice(*patient_, geometry_.plane(), style, buffers_, picture_);
+  slices::paint_slice(*patient_, geometry_.plane(), style, buffers_, picture_, motion_);
   if (overlay_) overlay_(geometry_.plane(), picture_);
   is_stale_ = false;
 }
@@ -342,8 +349,11 @@ void SliceView::draw_plan(const SliceCanvas& canvas) const {
   if (zone_) draw_entry_zone(canvas, *zone_);
   if (guidance_ == scene::Guidance::kPath)
     for (const Segment& other_P : other_paths_P_) draw_other_path(canvas, other_P);
-  if (guidance_ == scene::Guidance::kPath && path_P_) draw_path(canvas, *path_P_);
-  if (path_P_) draw_target(canvas, path_P_->b);
+  if (path_A_) {
+    const Segment now_P{motion_.to_now(path_A_->a), motion_.to_now(path_A_->b)};
+    if (guidance_ == scene::Guidance::kPath) draw_path(canvas, now_P);
+    draw_target(canvas, now_P.b);
+  }
   const bool is_along = kind_ == SliceKind::kAlongNeedle || kind_ == SliceKind::kAlongNeedleTurned;
   if (guidance_ == scene::Guidance::kPath && is_along) draw_aim(canvas, shaft_P_);
 }

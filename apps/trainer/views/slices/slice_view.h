@@ -10,6 +10,7 @@
 #include "anatomy/patient.h"
 #include "geometry/pose.h"
 #include "geometry/segment.h"
+#include "motion/patient_motion.h"
 #include "scene/guidance.h"
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
@@ -66,6 +67,9 @@ class SliceView : public QWidget {
   void set_overlay(Overlay overlay);
   /// Moves the slice to a point; pans if the point leaves the central part of the image.
   void set_focus(const Vec3& p_P);
+  /// Where the patient is; its model belongs to the patient.
+  void set_motion(const motion::PatientMotion& motion);
+  const motion::PatientMotion& motion() const noexcept { return motion_; }
   /// From hub to tip; empty hides the needle.
   void set_needle(std::span<const Vec3> shaft_P);
   /// Pose with which needle planes are aligned.
@@ -163,7 +167,7 @@ class SliceView : public QWidget {
   bool is_frame_at_skin_ = false;
   double offset_mm_ = 0.0;  ///< Offset of a needle plane from the tip, along the plane's normal.
   std::vector<Vec3> shaft_P_;
-  std::optional<Segment> path_P_;
+  std::optional<Segment> path_A_;
   std::vector<Segment> other_paths_P_;
   std::optional<tasks::EntryZone> zone_;
   scene::Guidance guidance_ = scene::Guidance::kPath;
@@ -173,6 +177,7 @@ class SliceView : public QWidget {
   slices::SliceGeometry geometry_;
   double device_pixel_ratio_ = 1.0;
   slices::SliceStyle style_;
+  motion::PatientMotion motion_;
   slices::SliceBuffers buffers_;
   volume::RgbImage picture_;
   bool is_stale_ = true;  ///< The image must be painted again before it is shown.

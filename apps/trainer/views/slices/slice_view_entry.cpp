@@ -52,6 +52,7 @@ class SliceViewEntry final : public View {
   void update(const FrameContext& frame) override {
     if (!is_stale_ || (frame.are_tools_moving && (frame.number + phase_) % 2 != 0)) return;
     is_stale_ = false;
+    view_->set_motion(tools_.motion);
     view_->set_needle(tools_.shaft_P);
     if (!tools_.shaft_P.empty()) view_->set_needle_frame(tools_.X_PN);
     if (tools_.focus_P) view_->set_focus(*tools_.focus_P);

@@ -163,6 +163,8 @@ ultrasound::ScanRequest UltrasoundView::make_request(double now_s) {
   if (settings_.is_panorama) request.panorama = poll_panorama();
   request.doppler = settings_.doppler;
   request.time_s = now_s;
+  // A patient without a motion model breathes all the same: its blood flow shows that.
+  request.motion = motion_.is_rest() ? motion::MotionClock{}.at(now_s) : motion_;
   const QSizeF size = layout_for(picture_ && is_frozen() ? picture_->scan : requested_scan()).picture.size();
   const double wanted_px = std::max(size.width(), size.height()) * devicePixelRatioF();
   const double scale = devicePixelRatioF() * std::min(1.0, kMostPixels_px / std::max(wanted_px, 1.0));

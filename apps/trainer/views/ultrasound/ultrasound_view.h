@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/segment.h"
+#include "motion/motion_clock.h"
 #include "ultrasound/doppler/flow_on_demand.h"
 #include "ultrasound/live/live_scanner.h"
 #include "ultrasound/panorama/panorama_on_demand.h"
@@ -46,6 +47,8 @@ class UltrasoundView : public QWidget {
   /// The scene of the patient that show_patient() opened without one; nullptr changes nothing.
   void set_scene(std::shared_ptr<const ultrasound::AcousticScene> scene);
   void set_transducer_pose(const Pose& X_PT);
+  /// Where the patient is; its model is that of the scene's patient.
+  void set_motion(const motion::PatientMotion& motion) { motion_ = motion; }
   /// Shaft from the hub to the tip; empty: no needle. `bore_share` and `tip_shift_mm` as in ScanRequest.
   void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, double bore_share = 0.0,
                   double tip_shift_mm = 0.0);
@@ -194,6 +197,7 @@ class UltrasoundView : public QWidget {
   std::optional<ultrasound::AcousticOutput> output_;
 
   std::optional<Pose> X_PT_;
+  motion::PatientMotion motion_;
   std::vector<Vec3> needle_shaft_P_;
   double needle_diameter_mm_ = 1.2, needle_bore_share_ = 0.0, tip_shift_mm_ = 0.0;
   std::optional<Segment> throw_P_, notch_P_;

@@ -56,6 +56,7 @@ class UltrasoundViewEntry final : public View {
     if (context.tools.stylet_P) metal_P.push_back(context.tools.stylet_P->b);
     view_->set_needle(metal_P, context.open.the_case.needle.outer_diameter_mm);
     view_->set_throw(context.visible.throw_P, context.visible.notch_P);
+    view_->set_motion(context.tools.motion);
     if (context.tools.X_PT) view_->set_transducer_pose(*context.tools.X_PT);
   }
 

@@ -149,7 +149,7 @@ void XrayView::advance(double now_s) {
 }
 
 void XrayView::advance_live(double now_s) {
-  contrast_.request({shaft_P_.empty() ? Vec3(Vec3::Constant(NAN)) : shaft_P_.back(),
+  contrast_.request({shaft_P_.empty() ? Vec3(Vec3::Constant(NAN)) : motion_.to_rest(shaft_P_.back()),
                      is_injecting() && !shaft_P_.empty() ? settings_.injection_ml_per_s : 0.0});
   xray::FluoroscopyRequest request = make_request(shaft_P_, is_injecting());
   if (const auto agent = contrast_.newest()) {
@@ -177,6 +177,7 @@ void XrayView::take(std::shared_ptr<const xray::FluoroscopyFrame> newest, const 
 xray::FluoroscopyRequest XrayView::make_request(std::span<const Vec3> shaft_P, bool is_injecting) const {
   xray::FluoroscopyRequest request;
   request.arm = settings_.arm;
+  request.motion = motion_;
   request.filters = settings_.filters;
   // At the dose of fluoroscopy a subtraction is mostly noise.
   request.dose_mode =
@@ -203,8 +204,10 @@ xray::ToolShape XrayView::make_wire() const {
   constexpr double kBehindTip_mm = 120.0;  // out of the skin, for all paths of the tasks
   const Vec3 axis_P = wire_P_->direction();
   std::vector<Vec3> points_P{wire_P_->a - kBehindTip_mm * axis_P};
-  const std::vector<Vec3> way_P = xray::guide_wire_way(prepared_->ducts, wire_P_->a, axis_P, wire_P_->length_mm());
-  points_P.insert(points_P.end(), way_P.begin(), way_P.end());
+  const Vec3 begin_A = motion_.to_rest(wire_P_->a);
+  const Vec3 axis_A = motion_.line_to_rest(begin_A, axis_P).normalized();
+  for (const Vec3& point_A : xray::guide_wire_way(prepared_->ducts, begin_A, axis_A, wire_P_->length_mm()))
+    points_P.push_back(motion_.to_now(point_A));
   return xray::tool_along(prepared_->wire, points_P);
 }
 

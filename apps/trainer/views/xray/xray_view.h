@@ -12,6 +12,7 @@
 #include "anatomy/patient.h"
 #include "attempt/record/xray_replay.h"
 #include "core/background_job.h"
+#include "motion/patient_motion.h"
 #include "tasks/needle.h"
 #include "tasks/xray_use.h"
 #include "views/xray/replay_fluoroscope.h"
@@ -55,6 +56,8 @@ class XrayView : public QWidget {
   /// The pulse that is displayed at a time: the last one of the pulse rate.
   double pulse_s(double time_s) const;
 
+  /// Where the patient is; its model belongs to the patient.
+  void set_motion(const motion::PatientMotion& motion) { motion_ = motion; }
   /// Shaft from the hub to the tip; empty: no needle. Not used in a replay.
   void set_needle(std::span<const Vec3> shaft_P) { shaft_P_.assign(shaft_P.begin(), shaft_P.end()); }
   /// Guide wire: where it left the needle, and its length and direction if it went straight on; in a duct it follows
@@ -151,6 +154,7 @@ class XrayView : public QWidget {
   std::optional<Replay> replay_;
   RetiredJobs retired_;  ///< The ends of former replays, which may wait for an image.
   std::vector<Vec3> shaft_P_;
+  motion::PatientMotion motion_;
   std::optional<Segment> wire_P_;
   bool is_pedal_down_ = false, is_injecting_ = false, is_injection_paused_ = false;
   QString injection_hindrance_;

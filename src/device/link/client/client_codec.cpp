@@ -52,6 +52,9 @@ constexpr Range kHandParameters = {0.0, 1e6};
 constexpr Range kPressed_mm = {0.0, kMostPressed_mm};
 constexpr Range kSettingValues = {-1e9, 1e9};
 constexpr Range kCouplings = {-1e6, 1e6};
+constexpr Range kBreaths_s = {1.0, 60.0};  // those of motion::check, like the next two
+constexpr Range kMotionTimes_s = {-1e9, 1e9};
+constexpr Range kDrives = {-motion::kMostDrive, motion::kMostDrive};
 constexpr double kMostSpeed_mm_per_s = 1e5;
 constexpr double kMostTurning_rad_per_s = 1e4;
 
@@ -59,6 +62,12 @@ constexpr double kMostTurning_rad_per_s = 1e4;
 
 using ClientMember = Member<wire::ClientBody>;
 using CommandMember = Member<wire::What>;
+
+wire::MotionDrive packed(const motion::MotionDrive& drive) {
+  static_assert(motion::kMostDrivers == 4, "the schema has four depths");
+  return {drive.period_s, drive.begins_s, drive.held_phase,
+          flatbuffers::span<const double, motion::kMostDrivers>(drive.depth), drive.is_held};
+}
 
 CommandMember build_what(Builder& b, const LoadScene& scene) {
   const Text task = b.CreateString(scene.task), patient = b.CreateString(scene.patient);
@@ -68,8 +77,10 @@ CommandMember build_what(Builder& b, const LoadScene& scene) {
                             scene.needle_stylet_radius_mm, scene.needle_young_gpa, scene.needle_bevel_rad,
                             scene.needle_bevel_share);
   const wire::Pose X_PW = to_wire(scene.X_PW);
+  const Text motion_hash = b.CreateString(scene.motion_hash);
+  const wire::MotionDrive motion = packed(scene.motion);
   const auto table = wire::CreateLoadScene(b, task, patient, scene.patient_seed, hash, tool, &needle, force_model,
-                                           tissues, scene.seed, &X_PW);
+                                           tissues, scene.seed, &X_PW, motion_hash, &motion);
   return {wire::What::LoadScene, table.Union()};
 }
 
@@ -88,9 +99,12 @@ CommandMember build_what(Builder& b, const SetParameters& parameters) {
   SettingList tissues;
   if (parameters.tissues) tissues = build_settings(b, *parameters.tissues);
   const Text table = b.CreateString(parameters.tissues_toml), force_model = b.CreateString(parameters.force_model);
+  std::optional<wire::MotionDrive> motion;
+  if (parameters.motion) motion = packed(*parameters.motion);
   return {wire::What::SetParameters,
           wire::CreateSetParameters(b, tissues, table, force_model, parameters.coupling_stiffness_n_per_mm,
-                                    parameters.coupling_damping_ns_per_mm, parameters.has_bending)
+                                    parameters.coupling_damping_ns_per_mm, parameters.has_bending,
+                                    motion ? &*motion : nullptr)
               .Union()};
 }
 
@@ -141,6 +155,17 @@ Heartbeat read(const wire::Heartbeat& table, Inspection& in) {
           in.number(table.window_age_s(), kDurations_s, "window_age_s"), table.ticks_received()};
 }
 
+motion::MotionDrive read(const wire::MotionDrive& from, Inspection& in) {
+  motion::MotionDrive drive;
+  drive.period_s = in.number(from.period_s(), kBreaths_s, "motion.period_s");
+  drive.begins_s = in.number(from.begins_s(), kMotionTimes_s, "motion.begins_s");
+  drive.held_phase = in.number(from.held_phase(), kShares, "motion.held_phase");
+  for (std::size_t n = 0; n < drive.depth.size(); ++n)
+    drive.depth[n] = in.number((*from.depth())[static_cast<flatbuffers::uoffset_t>(n)], kDrives, "motion.depth");
+  drive.is_held = from.is_held();
+  return drive;
+}
+
 LoadScene read(const wire::LoadScene& table, Inspection& in) {
   LoadScene scene;
   scene.task = in.text(table.task(), "task");
@@ -160,6 +185,8 @@ LoadScene read(const wire::LoadScene& table, Inspection& in) {
   scene.tissues_toml = in.text(table.tissues_toml(), "tissues_toml", Layout::kLines);
   scene.seed = table.seed();
   scene.X_PW = in.pose(*table.x_pw(), "X_PW");
+  scene.motion_hash = in.text(table.motion_hash(), "motion_hash");
+  scene.motion = read(*table.motion(), in);
   return scene;
 }
 
@@ -186,6 +213,7 @@ SetParameters read(const wire::SetParameters& table, Inspection& in) {
   parameters.coupling_damping_ns_per_mm =
       in.number(table.coupling_damping_ns_per_mm(), kCouplings, "coupling_damping_ns_per_mm");
   parameters.has_bending = table.has_bending();
+  if (table.motion() != nullptr) parameters.motion = read(*table.motion(), in);
   return parameters;
 }
 

@@ -133,6 +133,20 @@ TEST(UnsoundPose, RefusesANonRotation) {
   EXPECT_FALSE(is_accepted(Command{1, with(&LoadScene::X_PW, Pose(2.0 * R, Vec3::Zero()))}));
 }
 
+TEST(UnsoundMotion, IsRefused) {
+  const auto accepts = [](const motion::MotionDrive& drive) {
+    SetParameters parameters;
+    parameters.motion = drive;
+    return is_accepted(Command{1, with(&LoadScene::motion, drive)}) && is_accepted(Command{1, parameters});
+  };
+  EXPECT_TRUE(accepts({}));
+  for (const double bad : {-1.0, 0.5, 61.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_FALSE(accepts({.period_s = bad}));
+  EXPECT_FALSE(accepts({.begins_s = 1e12}));
+  EXPECT_FALSE(accepts({.held_phase = 1.1}));
+  EXPECT_FALSE(accepts({.depth = {0.0, 0.0, 0.0, -1.6}}));
+}
+
 TEST(UnsoundPose, RefusesATooDistantPosition) {
   constexpr double kFar_mm = 1e5;
   EXPECT_TRUE(is_accepted(with(&HandTarget::X_PN, Pose::translation({kFar_mm, 0, 0}))));

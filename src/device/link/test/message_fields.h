@@ -20,14 +20,17 @@ void each_field(T& value, Visit&& visit) {
     auto& [a, b, c] = value;
     all(a, b, c);
   } else if constexpr (std::is_same_v<Plain, LoadScene>) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = value;
-    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r] = value;
+    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
   } else if constexpr (std::is_same_v<Plain, TissueSetting>) {
     auto& [a, b, c] = value;
     all(a, b, c);
   } else if constexpr (std::is_same_v<Plain, SetParameters>) {
-    auto& [a, b, c, d, e, f] = value;
-    all(a, b, c, d, e, f);
+    auto& [a, b, c, d, e, f, g] = value;
+    all(a, b, c, d, e, f, g);
+  } else if constexpr (std::is_same_v<Plain, motion::MotionDrive>) {
+    auto& [a, b, c, d, e] = value;
+    all(a, b, c, d, e);
   } else if constexpr (std::is_same_v<Plain, Command>) {
     auto& [a, b] = value;
     all(a, b);

@@ -75,6 +75,10 @@ class RandomMessages {
     const Eigen::Quaterniond q(random_.normal(), random_.normal(), random_.normal(), random_.normal());
     pose = Pose(q.normalized().toRotationMatrix(), 1000.0 * some<Vec3>());
   }
+  void fill(motion::MotionDrive& drive) {
+    each_field(drive, [this](auto& field) { fill(field); });
+    drive.period_s = 1.0 + std::abs(drive.period_s);
+  }
   void fill(LoadScene& scene) {
     each_field(scene, [this](auto& field) { fill(field); });
     scene.tissues_toml += "\r\n\tk = 0.5\n";

@@ -34,31 +34,31 @@ constexpr double kFarBehind_mm = 25.0;
 constexpr double kLandmarkRadius_mm = 3.0;
 constexpr double kAboveSkin_mm = 0.6;
 
-/// Intersection of the skin with the line through p along the path.
-Vec3 onto_skin(const Vec3& p_P, const Vec3& along_P, const volume::FloatGrid& skin_distance_mm) {
+/// Intersection of the skin with the line through p along the path, at rest.
+Vec3 onto_skin(const Vec3& p_A, const Vec3& along_A, const volume::FloatGrid& skin_distance_mm) {
   constexpr int kSteps = 12;
   constexpr double kFarthest_mm = 30.0;
-  if (skin_distance_mm.empty()) return p_P;
+  if (skin_distance_mm.empty()) return p_A;
   double moved_mm = 0.0;
   for (int step = 0; step < kSteps; ++step) {
-    const double distance_mm = volume::sample_linear(skin_distance_mm, p_P + moved_mm * along_P);
+    const double distance_mm = volume::sample_linear(skin_distance_mm, p_A + moved_mm * along_A);
     moved_mm += distance_mm - kAboveSkin_mm;
     if (std::abs(distance_mm - kAboveSkin_mm) < 0.05) break;
   }
-  return std::abs(moved_mm) < kFarthest_mm ? Vec3(p_P + moved_mm * along_P) : p_P;
+  return std::abs(moved_mm) < kFarthest_mm ? Vec3(p_A + moved_mm * along_A) : p_A;
 }
 
-std::vector<Vec3> entry_ring(const EntryMark& entry, const Vec3& along_P, const volume::FloatGrid& skin_distance_mm) {
+std::vector<Vec3> entry_ring(const EntryMark& entry, const Vec3& along_A, const volume::FloatGrid& skin_distance_mm) {
   constexpr int kPoints = 72;
-  const Vec3 u_P = along_P.unitOrthogonal();
-  const Vec3 v_P = along_P.cross(u_P);
-  std::vector<Vec3> ring_P;
+  const Vec3 u_A = along_A.unitOrthogonal();
+  const Vec3 v_A = along_A.cross(u_A);
+  std::vector<Vec3> ring_A;
   for (int i = 0; i <= kPoints; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / kPoints;
-    ring_P.push_back(onto_skin(entry.centre_P + entry.radius_mm * (std::cos(angle) * u_P + std::sin(angle) * v_P),
-                               along_P, skin_distance_mm));
+    ring_A.push_back(onto_skin(entry.centre_A + entry.radius_mm * (std::cos(angle) * u_A + std::sin(angle) * v_A),
+                               along_A, skin_distance_mm));
   }
-  return ring_P;
+  return ring_A;
 }
 
 /// Interior of the ring: a fan around its centre.
@@ -143,25 +143,40 @@ void GuideLayer::look_from(const CameraView& view) {
   }
 }
 
-void GuideLayer::set_path(const std::optional<Segment>& line_P, const EntryMark& entry,
-                          const volume::FloatGrid& skin_distance_mm) {
+void GuideLayer::set_path(const std::optional<Segment>& line_A, const EntryMark& entry,
+                          const volume::FloatGrid& skin_distance_mm, const motion::PatientMotion& motion) {
   clear(line_);
   clear(marks_);
-  if (!line_P || !(line_P->length_mm() > 0.0)) return;
-  const Vec3 along_P = line_P->direction();
-  add_mesh(line_, dashes(*line_P), kPathColor, 1.0, false);
-  add_mesh(marks_, make_ball(line_P->b, kTargetRadius_mm), kTargetColor, 1.0, true);
-  const std::vector<Vec3> ring_P = entry_ring(entry, along_P, skin_distance_mm);
-  add_mesh(marks_, make_tube(ring_P, kEntryRing_mm, 8), kPathColor, 1.0, false);
-  add_mesh(marks_, disc(ring_P, onto_skin(entry.centre_P, along_P, skin_distance_mm)), kPathColor, 0.3, false);
+  if (!line_A || !(line_A->length_mm() > 0.0)) return;
+  const Vec3 along_A = line_A->direction();
+  const Segment line_P{motion.to_now(line_A->a), motion.to_now(line_A->b)};
+  add_mesh(line_, dashes(line_P), kPathColor, 1.0, false);
+  add_mesh(marks_, make_ball(line_P.b, kTargetRadius_mm), kTargetColor, 1.0, true);
+  std::vector<Vec3> ring = entry_ring(entry, along_A, skin_distance_mm);
+  for (Vec3& point : ring) point = motion.to_now(point);
+  const Vec3 middle_P = motion.to_now(onto_skin(entry.centre_A, along_A, skin_distance_mm));
+  add_mesh(marks_, make_tube(ring, kEntryRing_mm, 8), kPathColor, 1.0, false);
+  add_mesh(marks_, disc(ring, middle_P), kPathColor, 0.3, false);
   show_guidance();
 }
 
-void GuideLayer::set_other_paths(std::span<const Segment> lines_P) {
+void GuideLayer::set_motion(const motion::PatientMotion& motion) {
+  motion_ = motion;
+  draw_others();
+  draw_landmarks();
+}
+
+void GuideLayer::set_other_paths(std::span<const Segment> lines_A) {
+  others_A_.assign(lines_A.begin(), lines_A.end());
+  draw_others();
+}
+
+void GuideLayer::draw_others() {
   constexpr double kFaint = 0.8;
   clear(others_);
-  for (const Segment& line_P : lines_P)
-    if (line_P.length_mm() > 0.0) add_mesh(others_, dashes(line_P), kOtherPathColor, kFaint, false);
+  for (const Segment& line_A : others_A_)
+    if (line_A.length_mm() > 0.0)
+      add_mesh(others_, dashes({motion_.to_now(line_A.a), motion_.to_now(line_A.b)}), kOtherPathColor, kFaint, false);
   show_guidance();
 }
 
@@ -172,11 +187,17 @@ void GuideLayer::show_guidance() {
 }
 
 void GuideLayer::set_landmarks(const std::vector<anatomy::Landmark>& landmarks) {
+  landmarks_A_ = landmarks;
+  draw_landmarks();
+}
+
+void GuideLayer::draw_landmarks() {
   clear(landmarks_);
   texts_.clear();
-  for (const anatomy::Landmark& landmark : landmarks) {
-    add_mesh(landmarks_, make_ball(landmark.p_P, kLandmarkRadius_mm), kLandmarkColor, 1.0, true);
-    add_text(landmark.p_P, landmark.name, kLandmarkColor);
+  for (const anatomy::Landmark& landmark : landmarks_A_) {
+    const Vec3 p_P = motion_.to_now(landmark.p_P);
+    add_mesh(landmarks_, make_ball(p_P, kLandmarkRadius_mm), kLandmarkColor, 1.0, true);
+    add_text(p_P, landmark.name, kLandmarkColor);
   }
   scale_texts();
   for (const auto& prop : landmarks_) prop->SetVisibility(are_landmarks_visible_);

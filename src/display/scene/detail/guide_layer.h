@@ -6,15 +6,16 @@
 #include <span>
 #include <vector>
 
+#include "motion/patient_motion.h"
 #include "scene/camera.h"
 #include "scene/detail/drawing.h"
 #include "scene/guidance.h"
 
 namespace trocar::scene::detail {
 
-/// Entry zone of the needle: the skin within a ball. Frame P, mm.
+/// Entry zone of the needle: the skin within a ball. Frame A, mm.
 struct EntryMark {
-  Vec3 centre_P = Vec3::Zero();
+  Vec3 centre_A = Vec3::Zero();
   double radius_mm = 0.0;
 };
 
@@ -23,11 +24,14 @@ class GuideLayer {
  public:
   explicit GuideLayer(vtkRenderer& renderer) : renderer_(renderer) {}
 
-  /// Replaces path, zone and target. `skin_distance_mm` is used to project the zone on the skin; may be empty.
-  void set_path(const std::optional<Segment>& line_P, const EntryMark& entry,
-                const volume::FloatGrid& skin_distance_mm);
+  /// Replaces path, zone and target, which are at rest and drawn where they are now: the path straight between its
+  /// ends, the zone on the skin. `skin_distance_mm` is used to project the zone on the skin; may be empty.
+  void set_path(const std::optional<Segment>& line_A, const EntryMark& entry, const volume::FloatGrid& skin_distance_mm,
+                const motion::PatientMotion& motion);
+  /// Moves the other paths and the landmarks.
+  void set_motion(const motion::PatientMotion& motion);
   /// Further paths to compare with, faint; visible as the path is.
-  void set_other_paths(std::span<const Segment> lines_P);
+  void set_other_paths(std::span<const Segment> lines_A);
   void set_landmarks(const std::vector<anatomy::Landmark>& landmarks);
   // Return true if they changed something.
   bool set_guidance(Guidance guidance);
@@ -51,6 +55,8 @@ class GuideLayer {
   void scale_texts();
   void clear(Props& props);
   void show_guidance();
+  void draw_others();
+  void draw_landmarks();
 
   vtkRenderer& renderer_;
   Props line_;    ///< The path from a point in front of the skin to the target.
@@ -59,6 +65,9 @@ class GuideLayer {
   Props landmarks_;
   std::vector<Text> texts_;
   double text_scale_ = 1.0;
+  std::vector<Segment> others_A_;
+  std::vector<anatomy::Landmark> landmarks_A_;
+  motion::PatientMotion motion_;
   Guidance guidance_ = Guidance::kPath;
   bool is_guidance_visible_ = true;
   bool are_landmarks_visible_ = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/rest_plane.h"
 #include "volume/sampling.h"
 
 namespace trocar::scene::detail {
@@ -37,6 +38,11 @@ bool PlaneLayer::set_options(const MprOptions& options) {
   return true;
 }
 
+void PlaneLayer::set_motion(const motion::PatientMotion& motion) {
+  motion_ = motion;
+  drawn_pixels_ = 0;
+}
+
 void PlaneLayer::update(const std::optional<Segment>& needle_P, int pixels) {
   if (pixels == drawn_pixels_ && have_same_planes(needle_P, drawn_for_P_)) return;
   drawn_for_P_ = needle_P;
@@ -63,7 +69,12 @@ void PlaneLayer::draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right
   plane.step_v_P = step_mm * down_P;
   plane.columns = plane.rows = pixels;
   hu_.resize(static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
-  volume::sample_slice(patient_->ct, plane, kOutside_hu, hu_);
+  if (motion_.is_rest()) {
+    volume::sample_slice(patient_->ct, plane, kOutside_hu, hu_);
+  } else {
+    motion::rest_of_plane(motion_, plane, rest_A_);
+    volume::sample_points(patient_->ct, rest_A_, kOutside_hu, hu_);
+  }
   const std::span<std::uint8_t> rgba = quad.resize(pixels, pixels);
   const auto low_hu = static_cast<float>(options_.level_hu - 0.5 * options_.window_hu);
   const auto scale = static_cast<float>(255.0 / options_.window_hu);
@@ -73,7 +84,8 @@ void PlaneLayer::draw(PictureQuad& quad, const Vec3& middle_P, const Vec3& right
     const auto column = static_cast<double>(i % static_cast<std::size_t>(pixels));
     const auto row = static_cast<double>(i / static_cast<std::size_t>(pixels));
     const Vec3 p_P = plane.origin_P + column * plane.step_u_P + row * plane.step_v_P;
-    return volume::sample_linear(patient_->skin_distance_mm, p_P) < kBeyondSkin_mm;
+    return volume::sample_linear(patient_->skin_distance_mm, motion_.is_rest() ? p_P : rest_A_[i].cast<double>()) <
+           kBeyondSkin_mm;
   };
   for (std::size_t i = 0; i < hu_.size(); ++i) {
     const auto grey = static_cast<std::uint8_t>(std::clamp((hu_[i] - low_hu) * scale, 0.0F, 255.0F));

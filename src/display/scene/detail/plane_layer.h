@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/segment.h"
+#include "motion/patient_motion.h"
 #include "scene/detail/drawing.h"
 #include "scene/mpr.h"
 
@@ -18,6 +19,7 @@ class PlaneLayer {
   /// Stores a reference to CT and skin distance (may be empty) of the patient, without a copy; nullptr: no patient.
   void set_patient(const anatomy::VirtualPatient* patient) noexcept;
   bool set_options(const MprOptions& options);
+  void set_motion(const motion::PatientMotion& motion);
   const MprOptions& options() const noexcept { return options_; }
   /// Samples the planes again if the needle or the options have changed; `pixels` along an edge.
   void update(const std::optional<Segment>& needle_P, int pixels);
@@ -28,7 +30,9 @@ class PlaneLayer {
   const anatomy::VirtualPatient* patient_ = nullptr;
   MprOptions options_;
   std::array<PictureQuad, 3> quads_;
+  motion::PatientMotion motion_;
   std::vector<float> hu_;
+  std::vector<Vec3f> rest_A_;
   std::optional<Segment> drawn_for_P_;
   int drawn_pixels_ = 0;
 };

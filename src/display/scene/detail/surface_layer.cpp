@@ -66,6 +66,8 @@ std::vector<SurfaceLayer::Surface> SurfaceLayer::build(const std::vector<Order>&
         surface.levels[2] = to_polydata(coarser.mesh, coarser.normals);
       }
       surface.mapper = make_mapper(surface.levels[0]);
+      for (std::size_t level = 0; level < kMeshLevels; ++level)
+        if (level == 0 || !has_few) surface.points[level] = MovingPoints(surface.levels[level]);
     }
   });
   return surfaces;
@@ -102,7 +104,7 @@ void SurfaceLayer::build_waiting() {
   loading_ = compute_beside([orders = std::move(orders)] { return build(orders); });
 }
 
-const TriangleMesh& SurfaceLayer::mesh_P(std::string_view name) const {
+const TriangleMesh& SurfaceLayer::mesh_A(std::string_view name) const {
   const auto found =
       std::find_if(all_.begin(), all_.end(), [&](const Order& order) { return order.mesh->name == name; });
   TROCAR_CHECK(found != all_.end());
@@ -148,7 +150,26 @@ void SurfaceLayer::update(Surface& surface) {
   surface.actor->SetVisibility(is_visible_ && level_ == 0 && opacity > kLeastOpacity);
 }
 
+bool SurfaceLayer::set_motion(const motion::PatientMotion& motion) {
+  if (motion.is_same_place(motion_)) return false;
+  motion_ = motion;
+  is_moving_stale_ = true;
+  update_moving();
+  return true;
+}
+
+/// Of the drawn level only: the others follow when they are drawn.
+void SurfaceLayer::move_surfaces() {
+  for (Surface& surface : surfaces_) {
+    if (!is_shown(surface)) continue;
+    if (surface.points[static_cast<std::size_t>(level_)].move(motion_) && level_ > 0) is_moving_stale_ = true;
+    if (surface.levels[static_cast<std::size_t>(level_)] == surface.levels[0] && surface.points[0].move(motion_))
+      is_moving_stale_ = true;
+  }
+}
+
 void SurfaceLayer::update_moving() {
+  move_surfaces();
   coarse_.set_visible(is_visible_ && level_ > 0);
   if (level_ == 0 || !is_moving_stale_) return;
   std::vector<CoarsePart> parts;

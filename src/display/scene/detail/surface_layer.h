@@ -12,6 +12,7 @@
 
 #include "scene/detail/coarse_surfaces.h"
 #include "scene/detail/drawing.h"
+#include "scene/detail/moving_points.h"
 #include "scene/detail_policy.h"
 
 namespace trocar::scene::detail {
@@ -44,8 +45,10 @@ class SurfaceLayer {
   bool is_ready() const noexcept { return !loading_.valid() && begun_ == all_.size(); }
 
   const std::vector<StructureInfo>& structures() const noexcept { return structures_; }
-  /// Mesh of one of the structures.
-  const TriangleMesh& mesh_P(std::string_view name) const;
+  /// Where the patient is; true if surfaces have to be drawn again.
+  bool set_motion(const motion::PatientMotion& motion);
+  /// Mesh of one of the structures at rest.
+  const TriangleMesh& mesh_A(std::string_view name) const;
   /// True if it changed something; an unknown name changes nothing.
   bool set_opacity(std::string_view name, double opacity);
   /// True if it changed something. Also applies to later patients.
@@ -68,7 +71,8 @@ class SurfaceLayer {
     std::string name;
     Appearance look;
     std::array<vtkSmartPointer<vtkPolyData>, kMeshLevels> levels;
-    vtkSmartPointer<vtkPolyDataMapper> mapper;  ///< Mapper of level 0.
+    std::array<MovingPoints, kMeshLevels> points;  ///< Of `levels`; one of several that share a mesh.
+    vtkSmartPointer<vtkPolyDataMapper> mapper;     ///< Mapper of level 0.
     vtkSmartPointer<vtkActor> actor;
   };
 
@@ -83,6 +87,7 @@ class SurfaceLayer {
   void build_waiting();
   void update(Surface& surface);
   void update_moving();
+  void move_surfaces();
   StructureInfo* find(std::string_view name);
   void note_withheld();
   /// Opacity for drawing: 0 for withheld surfaces.
@@ -96,6 +101,7 @@ class SurfaceLayer {
   std::future<std::vector<Surface>> loading_;
   std::vector<Order> all_;
   std::size_t begun_ = 0;  ///< Surfaces of all_ that are prepared or in preparation.
+  motion::PatientMotion motion_;
   CoarseSurfaces coarse_;
   bool is_moving_stale_ = true;
   int coarse_level_ = 0;  ///< Level of the meshes in coarse_.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "motion/testing/sliding_motion.h"
 #include "scene/render_patient.h"
 #include "two_organs.h"
 
@@ -90,6 +91,34 @@ TEST_F(PatientSceneTest, ShowsTheBodyBeforeItsSurfacesExist) {
   const double half_height_mm = view.distance_mm() * std::tan(0.5 * view.view_angle_rad);
   EXPECT_GT(half_height_mm, 80.0);
   EXPECT_LT(half_height_mm, 150.0);
+}
+
+TEST_F(PatientSceneTest, SurfacesMoveWithThePatientAtEveryDetail) {
+  const auto model = motion::testing::uniform_model({0.0, 0.0, -30.0});
+  for (const Detail& detail : {DetailPolicy::full(), DetailPolicy::moving(0), DetailPolicy::moving(2)}) {
+    scene->set_motion({});
+    const auto rest = middle_of(draw(detail), is_reddish);
+    scene->set_motion({model.get(), {.drivers = {1.0}}});
+    const auto moved = middle_of(draw(detail), is_reddish);
+    EXPECT_NEAR(moved.x(), rest.x(), 1.0);
+    EXPECT_NEAR(moved.y() - rest.y(), 30.0 * 80.0 / 105.0, 2.5);
+    scene->set_motion({});
+    EXPECT_NEAR(middle_of(draw(detail), is_reddish).y(), rest.y(), 0.01);
+  }
+}
+
+TEST_F(PatientSceneTest, PicksAMovedSurfaceAtItsNewPosition) {
+  scene->set_opacity("skin", 0.0);
+  const auto before = middle_of(draw(), is_reddish);
+  const auto at = [&](double row) { return scene->pick(before.x() / kSize, row / kSize); };
+  ASSERT_TRUE(at(before.y()));
+  const Vec3 rest_P = *at(before.y());
+  const auto model = motion::testing::uniform_model({0.0, 0.0, -50.0});
+  scene->set_motion({model.get(), {.drivers = {1.0}}});
+  EXPECT_FALSE(at(before.y()));
+  const auto now = middle_of(draw(), is_reddish);
+  ASSERT_TRUE(at(now.y()));
+  EXPECT_NEAR((*at(now.y()) - rest_P).z(), -50.0, 3.0);
 }
 
 TEST_F(PatientSceneTest, OpacityHidesAndShowsOneStructure) {

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "core/files/input_file.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "io/image/detail/raw_volume.h"
 #include "io/image/detail/volume_file.h"
 #include "io/markups_file.h"
 #include "io/patient/detail/patient_layout.h"
+#include "motion/motion_file.h"
 
 namespace trocar::io {
 namespace fs = std::filesystem;
@@ -39,6 +41,16 @@ Status load_volumes(const fs::path& folder, anatomy::VirtualPatient& patient) {
   return {};
 }
 
+/// nullptr: the folder has no motion model.
+Result<std::shared_ptr<const motion::MotionModel>> load_motion(const fs::path& folder) {
+  const fs::path file = folder / detail::kMotionFile;
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(file, error))) return std::shared_ptr<const motion::MotionModel>();
+  TROCAR_TRY(const InputFile input, InputFile::open(file, FileKind::kToml, folder));
+  TROCAR_TRY(const std::string text, input.read_all());
+  return motion::parse_motion(text, file.string());
+}
+
 }  // namespace
 
 void round_as_saved(anatomy::VirtualPatient& patient) {
@@ -67,6 +79,7 @@ Result<anatomy::VirtualPatient> load_patient(const fs::path& folder) {
   TROCAR_TRY_STATUS(detail::check_label_ids(patient, folder.string()));
   TROCAR_TRY(patient.landmarks, read_landmarks(folder / detail::kLandmarkFile, folder));
   TROCAR_TRY(patient.paths, read_paths(folder / detail::kPathFile, folder));
+  TROCAR_TRY(patient.motion, load_motion(folder));
   patient.content_hash = anatomy::hash_patient(patient);
   log_info("loaded {}: {} labels, {:.1f} Mvoxel", folder.string(), patient.label_table.labels.size(),
            1e-6 * static_cast<double>(patient.labels.voxels.size()));

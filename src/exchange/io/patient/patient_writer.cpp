@@ -15,6 +15,7 @@
 #include "io/patient/patient_folder.h"
 #include "io/patient/patient_panorama.h"
 #include "io/sequence/transform_file.h"
+#include "motion/motion_file.h"
 
 namespace trocar::io {
 namespace fs = std::filesystem;
@@ -87,6 +88,8 @@ Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<
   TROCAR_TRY(description.meshes, write_meshes(meshes, folder, part_of(progress, 0.8, 1.0)));
   TROCAR_TRY_STATUS(write_landmarks(patient.landmarks, folder / detail::kLandmarkFile));
   TROCAR_TRY_STATUS(write_paths(patient.paths, folder / detail::kPathFile));
+  if (patient.motion != nullptr)
+    TROCAR_TRY_STATUS(write_file_atomically(folder / detail::kMotionFile, motion::to_toml(*patient.motion)));
   TROCAR_TRY_STATUS(write_file_atomically(folder / detail::kDescriptionFile, detail::to_toml(description)));
   report(progress, "saved", 1.0);
   return {};

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "haptics/contact/contact_column.h"
-#include "volume/sampling.h"
+#include "haptics/insertion/skin_contact.h"
 
 namespace trocar::haptics {
 namespace {
@@ -11,7 +11,8 @@ namespace {
 /// The points of a fingertip's face and the tissue under them.
 class Fingertip {
  public:
-  Fingertip(const HapticScene& scene, const Vec3& skin_P, const Vec3& along_P) noexcept : count_(scene.face.count) {
+  Fingertip(const PatientNow& now, const Vec3& skin_P, const Vec3& along_P) noexcept : count_(now.scene.face.count) {
+    const HapticScene& scene = now.scene;
     // The finger's frame: y into the body.
     Mat3 R_PT;
     R_PT.col(1) = along_P;
@@ -20,11 +21,11 @@ class Fingertip {
     for (std::size_t n = 0; n < static_cast<std::size_t>(count_); ++n) {
       const Vec3& point_T = scene.face.point_T[n];
       const Vec3 beside_P = skin_P + R_PT * Vec3(point_T.x(), 0.0, point_T.z());
-      const double off_skin_mm = volume::sample_linear(scene.patient->skin_distance_mm, beside_P);
+      const double off_skin_mm = skin_distance_mm(now, beside_P);
       Point& point = points_[n];
       point.before_mm = off_skin_mm - point_T.y();
       point.area_mm2 = scene.face.area_mm2[n] * scene.face.normal_T[n].y();
-      point.column = tissue_column(scene, beside_P + off_skin_mm * along_P, along_P);
+      point.column = tissue_column(now, beside_P + off_skin_mm * along_P, along_P);
     }
   }
 
@@ -53,34 +54,34 @@ bool is_place(const Vec3& skin_P, const Vec3& inward_P) noexcept {
   return skin_P.allFinite() && inward_P.allFinite() && inward_P.norm() > 0.0;
 }
 
-Palpation felt_at(const HapticScene& scene, const Vec3& skin_P, const Vec3& along_P, const Fingertip& finger,
+Palpation felt_at(const PatientNow& now, const Vec3& skin_P, const Vec3& along_P, const Fingertip& finger,
                   double pressed_mm) noexcept {
   const ColumnResponse response = finger.respond_to(pressed_mm);
   Palpation felt{response.pressure, pressed_mm, response.tangent, {}};
-  const TissueColumn middle = tissue_column(scene, skin_P, along_P);
+  const TissueColumn middle = tissue_column(now, skin_P, along_P);
   if (middle.length_mm < kColumn_mm) felt.bone_mm = middle.length_mm;
   return felt;
 }
 
 }  // namespace
 
-Palpation press(const HapticScene& scene, const Vec3& skin_P, const Vec3& inward_P, double pressed_mm) noexcept {
+Palpation press(const PatientNow& now, const Vec3& skin_P, const Vec3& inward_P, double pressed_mm) noexcept {
   if (!is_place(skin_P, inward_P) || !(pressed_mm > 0.0)) return {};
   const Vec3 along_P = inward_P.normalized();
-  return felt_at(scene, skin_P, along_P, Fingertip(scene, skin_P, along_P), pressed_mm);
+  return felt_at(now, skin_P, along_P, Fingertip(now, skin_P, along_P), pressed_mm);
 }
 
-Palpation palpate(const HapticScene& scene, const Vec3& skin_P, const Vec3& inward_P, double force_n) noexcept {
+Palpation palpate(const PatientNow& now, const Vec3& skin_P, const Vec3& inward_P, double force_n) noexcept {
   if (!is_place(skin_P, inward_P) || !(force_n > 0.0)) return {};
   constexpr int kHalvings = 12;  // 0.01 mm
   const Vec3 along_P = inward_P.normalized();
-  const Fingertip finger(scene, skin_P, along_P);
+  const Fingertip finger(now, skin_P, along_P);
   double low_mm = 0.0, high_mm = kColumn_mm;
   for (int n = 0; n < kHalvings; ++n) {
     const double middle_mm = 0.5 * (low_mm + high_mm);
     (finger.respond_to(middle_mm).pressure < force_n ? low_mm : high_mm) = middle_mm;
   }
-  return felt_at(scene, skin_P, along_P, finger, 0.5 * (low_mm + high_mm));
+  return felt_at(now, skin_P, along_P, finger, 0.5 * (low_mm + high_mm));
 }
 
 Hardness hardness_of(const Palpation& palpation) noexcept {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "haptics/contact/contact_face.h"
-#include "haptics/haptic_scene.h"
+#include "haptics/patient_now.h"
 
 namespace trocar::haptics {
 
@@ -20,11 +20,11 @@ struct Palpation {
 inline constexpr double kPalpating_n = 5.0;
 
 /// Presses a face of fingertip's shape `pressed_mm` into the skin at a point of it, along `inward_P` (unit): the sum of
-/// the columns of tissue under its points, layers in series, as in contact.h. Friction and tilt do not act. `scene`: of
-/// a finger (HapticOptions::tool). Real-time safe; 0 N for a press that is not positive.
-Palpation press(const HapticScene& scene, const Vec3& skin_P, const Vec3& inward_P, double pressed_mm) noexcept;
+/// the columns of tissue under its points, layers in series, as in contact.h. Friction and tilt do not act. The
+/// scene is that of a finger (HapticOptions::tool). Real-time safe; 0 N for a press that is not positive.
+Palpation press(const PatientNow& now, const Vec3& skin_P, const Vec3& inward_P, double pressed_mm) noexcept;
 /// The same for a given force: the indentation is found to 0.01 mm, at most kColumn_mm.
-Palpation palpate(const HapticScene& scene, const Vec3& skin_P, const Vec3& inward_P,
+Palpation palpate(const PatientNow& now, const Vec3& skin_P, const Vec3& inward_P,
                   double force_n = kPalpating_n) noexcept;
 
 /// Hardness in classes for words and colours; limits assumed.

@@ -35,6 +35,14 @@ inline Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) no
 
 /// Last step of every tick. Limits `device_f_n`, the torque and its part about the stylus to the device's peaks and
 /// adds limit events. Rotates them, and their parts of tissue and weight, to W.
+/// Tip and axis of a sample in the anatomy at rest.
+inline void note_rest(const motion::PatientMotion& motion, telemetry::TickSample& sample) noexcept {
+  telemetry::set_at_rest(sample);
+  if (motion.is_rest()) return;
+  sample.rest_tip_mm = motion.to_rest(sample.tip_mm);
+  sample.rest_axis = motion.line_to_rest(sample.rest_tip_mm, sample.axis).normalized();
+}
+
 inline void limit_to_device(HapticOutput& output, const Wrench& tissue_P, const Wrench& weight_P,
                             const Vec3& stylus_axis_P, EventList& events, const HapticScene& scene) noexcept {
   telemetry::TickSample& sample = output.sample;

@@ -69,11 +69,17 @@ struct ColourDoppler::Impl {
   std::vector<float> wide_re, wide_im;  ///< Smoothed along the gates.
   std::vector<float> sigma_mm;          ///< Per gate: half the beam's thickness.
   VesselFlow::Moment moment{};
+  motion::PatientMotion motion;
   detail::ColourConversion conversion;
 
   void set_cells(const ScanGeometry& geometry, const DopplerSettings& settings);
   struct Ray;
   Ray make_ray(const DopplerInput& input, int line) const noexcept;
+  struct BloodNow {
+    Vec3f velocity_P;
+    float share;
+  };
+  BloodNow blood_at(const Vec3f& p_P) const noexcept;
   std::array<float, 2> correlate(const Ray& ray, int gate, std::size_t sample, std::uint64_t key) const noexcept;
   void measure_line(const DopplerInput& input, int line) noexcept;
   void smooth_along(int line) noexcept;
@@ -145,6 +151,17 @@ ColourDoppler::Impl::Ray ColourDoppler::Impl::make_ray(const DopplerInput& input
   return ray;
 }
 
+/// Blood at a point now; its velocity in P. What flows through a vessel stays the same where tissue stretches (Piola),
+/// and the tissue carries the blood along.
+ColourDoppler::Impl::BloodNow ColourDoppler::Impl::blood_at(const Vec3f& p_P) const noexcept {
+  const Vec3 p_A = motion.to_rest(p_P.cast<double>());
+  const VesselFlow::Blood blood = flow->at(motion.is_rest() ? p_P : p_A.cast<float>(), moment);
+  if (motion.is_rest() || blood.share <= 0.0F) return {blood.velocity_A, blood.share};
+  const Mat3 jacobian = motion.jacobian(p_A);
+  const Vec3 carried_P = jacobian * blood.velocity_A.cast<double>() / jacobian.determinant();
+  return {(carried_P + motion.velocity(p_A)).cast<float>(), blood.share};
+}
+
 /// Echo of blood at a gate in all planes of the beam, after the wall filter; 0 without blood.
 std::array<float, 2> ColourDoppler::Impl::correlate(const Ray& ray, int gate, std::size_t sample,
                                                     std::uint64_t key) const noexcept {
@@ -154,7 +171,7 @@ std::array<float, 2> ColourDoppler::Impl::correlate(const Ray& ray, int gate, st
   const Vec3f middle_P = ray.start_P + ray.rest_mm(depth_mm, sample) * ray.along_P;
   const Vec3f thick_P = sigma_mm[static_cast<std::size_t>(gate)] * ray.elevation_P;
   for (std::size_t n = 0; n < kBeamPlanes.size(); ++n) {
-    const VesselFlow::Blood blood = flow->at(middle_P + kBeamPlanes[n].zeta * thick_P, moment);
+    const BloodNow blood = blood_at(middle_P + kBeamPlanes[n].zeta * thick_P);
     if (blood.share <= 0.0F) continue;
     // Towards the face is positive; the phase between pulses in half turns, aliased.
     float share = -blood.velocity_P.dot(ray.along_P) / ray.scale_mm_per_s;
@@ -238,7 +255,8 @@ ColourDoppler& ColourDoppler::operator=(ColourDoppler&&) noexcept = default;
 const DopplerFrame& ColourDoppler::render(const DopplerInput& input) noexcept {
   Impl& impl = *impl_;
   impl.set_cells(input.geometry, within_ranges(settings));
-  impl.moment = impl.flow->moment(input.time_s);
+  impl.moment = impl.flow->moment(input.time_s, input.motion.phase());
+  impl.motion = input.motion;
   for (std::size_t gate = 0; gate < impl.sigma_mm.size(); ++gate)
     impl.sigma_mm[gate] = static_cast<float>(
         input.beam.elevation_sigma_mm(impl.frame.first_mm + impl.frame.gate_mm * static_cast<double>(gate)));

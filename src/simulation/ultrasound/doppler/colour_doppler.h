@@ -18,14 +18,15 @@ class EchoEngine;
 
 /// Input of one colour frame.
 struct DopplerInput {
-  Pose X_PT;  ///< Transducer in the (resting) patient.
+  Pose X_PT;  ///< Transducer in the patient now.
   ScanGeometry geometry;
   Beam beam;
-  double time_s = 0.0;     ///< Time of heart and breath.
+  double time_s = 0.0;     ///< Time of the heart.
   std::uint64_t seed = 0;  ///< Seed of the noise; differs from frame to frame.
   /// The engine that rendered this frame: losses along the path, and the indentation under the face. nullptr: only
   /// kPlainLoss_db_per_cm_mhz, no indentation.
   const EchoEngine* engine = nullptr;
+  motion::PatientMotion motion{};  ///< Where the patient is, and in which phase of the breath.
 };
 inline constexpr double kPlainLoss_db_per_cm_mhz = 0.5;
 

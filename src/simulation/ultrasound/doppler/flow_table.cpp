@@ -76,14 +76,14 @@ bool is_named(std::string_view label, const std::vector<std::string>& patterns) 
   });
 }
 
-double FlowWaveform::at(double time_s, double heart_per_min, double breaths_per_min) const noexcept {
+double FlowWaveform::at(double time_s, double heart_per_min, double breath_phase) const noexcept {
   const auto n = static_cast<double>(values.size());
   const double beats = time_s * heart_per_min / kSecondsPerMinute;
   const double place = (beats - std::floor(beats)) * n;
   const auto low = std::min(static_cast<std::size_t>(place >= 0.0 ? place : 0.0), values.size() - 1);  // also NaN
   const std::size_t high = (low + 1) % values.size();
   const double value = std::lerp(values[low], values[high], place - static_cast<double>(low));
-  const double breath = std::sin(2.0 * std::numbers::pi * time_s * breaths_per_min / kSecondsPerMinute);
+  const double breath = std::sin(2.0 * std::numbers::pi * breath_phase);
   return value * (1.0 + breathing * breath);
 }
 
@@ -100,10 +100,9 @@ const FlowRule* FlowTable::find(std::string_view label, const anatomy::LabelTabl
 
 Result<FlowTable> load_flow_table(const std::filesystem::path& path) {
   TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
-  TROCAR_TRY_STATUS(document.check_keys({"heart_per_min", "breaths_per_min", "waveforms", "vessels"}));
+  TROCAR_TRY_STATUS(document.check_keys({"heart_per_min", "waveforms", "vessels"}));
   FlowTable table;
   TROCAR_TRY(table.heart_per_min, read_sourced_value(document, "heart_per_min", {30.0, 200.0}));
-  TROCAR_TRY(table.breaths_per_min, read_sourced_value(document, "breaths_per_min", {0.0, 60.0}));
   TROCAR_TRY(const config::TomlTable waveforms, document.table("waveforms"));
   const std::vector<std::string> names = waveforms.keys();
   if (names.size() > kMostWaveforms)

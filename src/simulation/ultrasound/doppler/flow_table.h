@@ -18,8 +18,9 @@ struct FlowWaveform {
   std::vector<double> values;  ///< In equal time steps from the R wave. Range -1..1; at least 4.
   double breathing = 0.0;      ///< Fraction by which a breath changes the speed. Range 0..0.8.
 
-  /// Value at a time since the common start of heartbeat and breath at 0. Periodic and continuous. Real-time safe.
-  double at(double time_s, double heart_per_min, double breaths_per_min) const noexcept;
+  /// Value at a time since the start of a heartbeat at 0 and at a phase of the breath (PatientMotion::phase). Periodic
+  /// and continuous. Real-time safe.
+  double at(double time_s, double heart_per_min, double breath_phase) const noexcept;
 };
 
 /// Blood flow in a kind of vessel.
@@ -41,7 +42,6 @@ struct FlowRule {
 
 struct FlowTable {
   double heart_per_min = 70.0;          ///< Range 30..200.
-  double breaths_per_min = 14.0;        ///< Range 0..60.
   std::vector<FlowWaveform> waveforms;  ///< At most 32.
   std::vector<FlowRule> rules;
 

@@ -11,21 +11,21 @@
 
 namespace trocar::ultrasound {
 
-VesselFlow::Moment VesselFlow::moment(double time_s) const noexcept {
+VesselFlow::Moment VesselFlow::moment(double time_s, double breath_phase) const noexcept {
   Moment values{};
   for (std::size_t n = 0; n < table_.waveforms.size(); ++n)
-    values[n] = static_cast<float>(table_.waveforms[n].at(time_s, table_.heart_per_min, table_.breaths_per_min));
+    values[n] = static_cast<float>(table_.waveforms[n].at(time_s, table_.heart_per_min, breath_phase));
   return values;
 }
 
-VesselFlow::Blood VesselFlow::at(const Vec3f& p_P, const Moment& moment) const noexcept {
+VesselFlow::Blood VesselFlow::at(const Vec3f& p_A, const Moment& moment) const noexcept {
   Blood blood;
   std::array<std::int32_t, 3> brick;
   std::array<std::int32_t, 3> cell;
   std::array<float, 3> part;
   for (std::size_t a = 0; a < 3; ++a) {
     const auto& row = index_of_P_[a];
-    const float index = row[0] * p_P.x() + row[1] * p_P.y() + row[2] * p_P.z() + index_of_origin_[a];
+    const float index = row[0] * p_A.x() + row[1] * p_A.y() + row[2] * p_A.z() + index_of_origin_[a];
     if (!(index >= 0.0F && index < static_cast<float>(kBrick * brick_count_[a]))) return blood;
     const auto whole = static_cast<std::int32_t>(index);
     part[a] = index - static_cast<float>(whole);
@@ -44,14 +44,14 @@ VesselFlow::Blood VesselFlow::at(const Vec3f& p_P, const Moment& moment) const n
     blood.share += weight * static_cast<float>(at.share);
     const float speed = weight * kSpeedStep_mm_per_s * moment[at.waveform];
     for (std::size_t a = 0; a < 3; ++a)
-      blood.velocity_P[static_cast<Eigen::Index>(a)] += speed * static_cast<float>(at.velocity_P[a]);
+      blood.velocity_A[static_cast<Eigen::Index>(a)] += speed * static_cast<float>(at.velocity_A[a]);
   }
   blood.share /= 255.0F;
   return blood;
 }
 
-Vec3 VesselFlow::velocity_P(const Vec3& p_P, double time_s) const noexcept {
-  return at(p_P.cast<float>(), moment(time_s)).velocity_P.cast<double>();
+Vec3 VesselFlow::velocity_A(const Vec3& p_A, double time_s, double breath_phase) const noexcept {
+  return at(p_A.cast<float>(), moment(time_s, breath_phase)).velocity_A.cast<double>();
 }
 
 bool is_vessel(const anatomy::Label& label) {

@@ -40,23 +40,23 @@ struct VesselFlowOptions {
 };
 
 /// Blood flow in the labelled vessels of a patient at rest: along the centrelines, with a profile across the lumen and
-/// a waveform over the heartbeat (docs/physics.md U15). Immutable; frame P. Not included: vortices, helices, jets, the
+/// a waveform over the heartbeat (docs/physics.md U15). Immutable; frame A. Not included: vortices, helices, jets, the
 /// pulse's travel time, moving walls.
 class VesselFlow {
  public:
-  /// Blood at a point: velocity (mm/s, P) and the share of lumen there, 0..1.
+  /// Blood at a point: velocity (mm/s, A) and the share of lumen there, 0..1.
   struct Blood {
-    Vec3f velocity_P = Vec3f::Zero();
+    Vec3f velocity_A = Vec3f::Zero();
     float share = 0.0F;
   };
   /// Value of each waveform at one time; the same for all points.
   using Moment = std::array<float, 32>;
 
-  Moment moment(double time_s) const noexcept;
+  Moment moment(double time_s, double breath_phase) const noexcept;
   /// Real-time safe. No blood outside the vessels, or at a point with NaN.
-  Blood at(const Vec3f& p_P, const Moment& moment) const noexcept;
+  Blood at(const Vec3f& p_A, const Moment& moment) const noexcept;
   /// mm/s; 0 outside vessels. Real-time safe.
-  Vec3 velocity_P(const Vec3& p_P, double time_s) const noexcept;
+  Vec3 velocity_A(const Vec3& p_A, double time_s, double breath_phase) const noexcept;
 
   std::span<const VesselBranch> branches() const noexcept { return branches_; }
   const FlowTable& table() const noexcept { return table_; }
@@ -68,7 +68,7 @@ class VesselFlow {
   friend class VesselFlowMaker;
   /// Speeds are in steps of kSpeedStep_mm_per_s.
   struct Cell {
-    std::array<std::int16_t, 3> velocity_P{};
+    std::array<std::int16_t, 3> velocity_A{};
     std::uint8_t share = 0;  ///< Share of lumen, in 1/255.
     std::uint8_t waveform = 0;
   };

@@ -163,7 +163,7 @@ const ScanGeometry& BMode::geometry() const noexcept {
 void BMode::Impl::find_paths(const BModeInput& input, const LineRange& lines) noexcept {
   const auto first = static_cast<std::size_t>(lines.first), count = static_cast<std::size_t>(lines.count());
   find_contact(scene->skin_distance_mm, plan.geometry, input.X_PT, std::span(frame.contact).subspan(first, count),
-               lines.first);
+               lines.first, input.motion);
   fit_dent(*scene, plan, frame);
   aim_lines(plan, frame, lines.first, lines.last);
   for_groups(lines, [&](int group, int begin, int end) {
@@ -179,6 +179,7 @@ const BasebandFrame& BMode::render(const BModeInput& input) noexcept {
   ScanPlan& plan = impl.plan;
   FrameState& frame = impl.frame;
   frame.X_PT = input.X_PT;
+  frame.motion = input.motion;
   // Fits of surfaces and refraction read the neighbours of a scanline.
   constexpr int kNeighbours = 16;
   const LineRange wanted = impl.has_frame || input.is_alone ? input.renewed : LineRange{};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/pose.h"
+#include "motion/patient_motion.h"
 #include "ultrasound/engine/artefacts.h"
 #include "ultrasound/engine/beam.h"
 #include "ultrasound/engine/needle_echo.h"
@@ -47,7 +48,7 @@ struct LineRange {
 
 /// Input of one frame.
 struct BModeInput {
-  Pose X_PT;  ///< Transducer in the (resting) patient.
+  Pose X_PT;  ///< Transducer in the patient now.
   std::span<const NeedleEcho> needles;
   double time_s = 0.0;
   /// Scanlines to renew, widened to multiples of four; empty: all. The others keep their echoes, as in a scanner that
@@ -57,6 +58,7 @@ struct BModeInput {
   /// True: scanlines outside `renewed` are silent instead of keeping their echoes, so that the frame does not depend on
   /// earlier ones. Only the renewed scanlines of the result are then valid.
   bool is_alone = false;
+  motion::PatientMotion motion{};  ///< Where the patient is.
 };
 
 /// Echoes of one frame, beamformed, demodulated and not yet amplified: complex baseband, scanline by scanline (sample

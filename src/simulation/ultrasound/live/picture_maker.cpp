@@ -138,7 +138,7 @@ void PictureMaker::Impl::add_colour(const ScanRequest& request, LevelRenderer& r
   metadata.doppler_scan = echoes.geometry;
   metadata.doppler_settings = request.doppler;
   metadata.doppler = renderer.doppler->render(
-      {request.X_PT, echoes.geometry, echoes.beam, request.time_s, seed, renderer.engine.get()});
+      {request.X_PT, echoes.geometry, echoes.beam, request.time_s, seed, renderer.engine.get(), request.motion});
   picture.colour = renderer.doppler->overlay(picture.gray, picture.raster);
   picture.doppler = request.doppler;
   picture.doppler_scale_cm_per_s = metadata.doppler.scale_cm_per_s;
@@ -195,8 +195,8 @@ ScanPicture PictureMaker::make(const ScanRequest& asked, ScanDetail detail, std:
     needle.bore_share = request.needle_bore_share;
     needles.push_back(needle);
   }
-  const BasebandFrame& echoes =
-      renderer.engine->render({request.X_PT, needles, request.time_s, renderer.next_lines(request, is_other_detail)});
+  const BasebandFrame& echoes = renderer.engine->render(
+      {request.X_PT, needles, request.time_s, renderer.next_lines(request, is_other_detail), false, request.motion});
 
   ScanPicture picture;
   picture.gray = scanner.show(echoes, seed);

@@ -61,6 +61,7 @@ bool has_same_settings(const ScanRequest& a, const ScanRequest& b) noexcept {
 bool is_equivalent(const ScanRequest& a, const ScanRequest& b, double tolerance_mm) noexcept {
   if (!has_same_settings(a, b)) return false;
   if (a.needle_diameter_mm != b.needle_diameter_mm || a.needle_bore_share != b.needle_bore_share) return false;
+  if (a.motion.most_shift_mm(b.motion) > tolerance_mm) return false;
   if (std::abs(a.tip_shift_mm - b.tip_shift_mm) > tolerance_mm) return false;
   for (const Vec3& p_T : {Vec3(0.0, 0.0, 0.0), Vec3(kLever_mm, 0.0, 0.0), Vec3(0.0, kLever_mm, 0.0)})
     if (!is_near(a.X_PT * p_T, b.X_PT * p_T, tolerance_mm)) return false;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geometry/pose.h"
+#include "motion/patient_motion.h"
 #include "ultrasound/doppler/doppler_settings.h"
 #include "ultrasound/doppler/vessel_flow.h"
 #include "ultrasound/engine/echo_engine.h"
@@ -15,7 +16,8 @@ namespace trocar::ultrasound {
 
 /// Request to a live scanner: present poses of transducer and needle, and settings.
 struct ScanRequest {
-  Pose X_PT;                                 ///< Transducer in the (resting) patient.
+  Pose X_PT;                                 ///< Transducer in the patient now.
+  motion::PatientMotion motion;              ///< Where the patient is; its model is that of the scene.
   std::vector<Vec3> needle_shaft_P;          ///< From the hub to the tip; fewer than two points: no needle.
   double needle_diameter_mm = 1.2;           ///< Range 0.2..5.
   double needle_bore_share = 0.0;            ///< See NeedleEcho::bore_share.
@@ -37,8 +39,8 @@ struct ScanRequest {
 /// transducer's or the type's default. The focus is limited to the picture.
 ScanRequest within_ranges(const ScanRequest& request, const Transducer& transducer);
 
-/// True if a frame of `a` can also be displayed for `b`: same pose within a hand's tremor (corners and needle within
-/// `tolerance_mm`), same settings and size. Time is ignored.
+/// True if a frame of `a` can also be displayed for `b`: same pose and patient within a hand's tremor (corners, needle
+/// and tissue within `tolerance_mm`), same settings and size. Time is ignored.
 bool is_equivalent(const ScanRequest& a, const ScanRequest& b, double tolerance_mm) noexcept;
 /// True if the settings are the same.
 bool has_same_settings(const ScanRequest& a, const ScanRequest& b) noexcept;

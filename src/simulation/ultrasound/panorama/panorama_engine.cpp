@@ -206,7 +206,7 @@ void PanoramaEngine::Impl::sample(int group, int first, int last) noexcept {
     line.sigma_mm = sigma_mm.data();
     line.samples = plan.samples / stride + 1;
     line.weight_step = weight_step(step_mm);
-    sample_panorama(map, planes, line, s.samples);
+    sample_panorama(map, frame.motion, planes, line, s.samples);
     expand_samples(s.samples.power, stride, plan.samples, power.data() + at * samples);
     expand_samples(s.samples.weight, stride, plan.samples, weight.data() + at * samples);
     const double sample_mm = plan.geometry.sample_mm();
@@ -352,6 +352,7 @@ const BasebandFrame& PanoramaEngine::render(const BModeInput& input) noexcept {
   const LineRange wanted = impl.has_frame || input.is_alone ? input.renewed : LineRange{};
   const LineRange lines = widened(wanted, 0, impl.plan.lines), probed = widened(wanted, kNeighbours, impl.plan.lines);
   impl.frame.X_PT = input.X_PT;
+  impl.frame.motion = input.motion;
   if (input.is_alone) {
     silence_outside(impl.plan, impl.frame, lines, probed);
     std::fill(impl.near_ends.begin(), impl.near_ends.end(), NearEnd{});
@@ -381,7 +382,8 @@ const BasebandFrame& PanoramaEngine::render(const BModeInput& input) noexcept {
   for (int n = 0; n < cast.count; ++n) {
     const LineRange& run = cast.runs[static_cast<std::size_t>(n)];
     const bool is_part = run.count() < impl.plan.lines;
-    const BasebandFrame& casting = impl.ray_cast.render({input.X_PT, input.needles, input.time_s, run, is_part});
+    const BasebandFrame& casting =
+        impl.ray_cast.render({input.X_PT, input.needles, input.time_s, run, is_part, input.motion});
     for_groups(run, [&](int, int first, int last) {
       for (int l = first; l < last; ++l) impl.join(l, &casting);
     });

@@ -22,14 +22,15 @@ constexpr double kRigid_mrayl = 3.0;
 constexpr int kReachLines = 9;
 
 /// Distance from p to the skin along a unit direction, at most `farthest_mm`: the signed distance never exceeds it, so
-/// steps of that length approach the skin without passing it.
-double distance_to_skin_mm(const volume::FloatGrid& skin_distance_mm, const Vec3& p_P, const Vec3& direction_P,
-                           double sign, double farthest_mm) noexcept {
+/// steps of that length approach the skin without passing it; shorter ones where motion may have compressed it.
+double distance_to_skin_mm(const volume::FloatGrid& skin_distance_mm, const motion::PatientMotion& motion,
+                           const Vec3& p_P, const Vec3& direction_P, double sign, double farthest_mm) noexcept {
+  const double step_share = motion.is_rest() ? 1.0 : 0.6;
   double way_mm = 0.0;
   for (int step = 0; step < kMaxSteps && way_mm < farthest_mm; ++step) {
-    const double left_mm = sign * sample_linear(skin_distance_mm, Vec3(p_P + way_mm * direction_P));
+    const double left_mm = sign * sample_linear(skin_distance_mm, motion.to_rest(p_P + way_mm * direction_P));
     if (!(left_mm > kContactTolerance_mm)) break;  // also NaN
-    way_mm += left_mm;
+    way_mm += step_share * left_mm;
   }
   return std::min(way_mm, farthest_mm);
 }
@@ -56,12 +57,13 @@ std::uint8_t tissue_at(const AcousticScene& scene, const Vec3& p_P) noexcept {
 }
 
 /// Depth of the indented tissue under one scanline.
-double line_reach_mm(const AcousticScene& scene, std::uint8_t fat, const Scanline& line) noexcept {
+double line_reach_mm(const AcousticScene& scene, const motion::PatientMotion& motion, std::uint8_t fat,
+                     const Scanline& line) noexcept {
   constexpr double kStep_mm = 1.0;
   double fat_mm = 0.0;
   double depth_mm = 0.0;
   for (; depth_mm < kGreatestContactReach_mm; depth_mm += kStep_mm) {
-    const std::uint8_t tissue = tissue_at(scene, line.origin_P + depth_mm * line.direction_P);
+    const std::uint8_t tissue = tissue_at(scene, motion.to_rest(line.origin_P + depth_mm * line.direction_P));
     if (tissue < scene.table.tissues.size() && scene.table.tissues[tissue].impedance_mrayl() > kRigid_mrayl) break;
     if (tissue == fat) fat_mm += kStep_mm;
   }
@@ -79,7 +81,7 @@ float gap_coupling(float gap_mm) noexcept {
 }
 
 void find_contact(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& geometry, const Pose& X_PT,
-                  std::span<LineContact> contact, int first_line) noexcept {
+                  std::span<LineContact> contact, int first_line, const motion::PatientMotion& motion) noexcept {
   const bool has_skin = !skin_distance_mm.empty() && X_PT.is_finite();
   const std::size_t lines =
       std::min(contact.size(), static_cast<std::size_t>(std::max(geometry.lines - first_line, 0)));
@@ -88,12 +90,12 @@ void find_contact(const volume::FloatGrid& skin_distance_mm, const ScanGeometry&
     line_contact = {};
     if (!has_skin) continue;
     const Scanline line = scanline(geometry, X_PT, static_cast<double>(n) + first_line);
-    if (sample_linear(skin_distance_mm, line.origin_P) < 0.0) {
+    if (sample_linear(skin_distance_mm, motion.to_rest(line.origin_P)) < 0.0) {
       line_contact.pressed_mm = static_cast<float>(
-          distance_to_skin_mm(skin_distance_mm, line.origin_P, -line.direction_P, -1.0, kDeepestDent_mm));
+          distance_to_skin_mm(skin_distance_mm, motion, line.origin_P, -line.direction_P, -1.0, kDeepestDent_mm));
     } else {
       line_contact.gap_mm = static_cast<float>(
-          distance_to_skin_mm(skin_distance_mm, line.origin_P, line.direction_P, 1.0, kWidestGap_mm));
+          distance_to_skin_mm(skin_distance_mm, motion, line.origin_P, line.direction_P, 1.0, kWidestGap_mm));
       line_contact.coupling = gap_coupling(line_contact.gap_mm);
     }
   }
@@ -110,12 +112,13 @@ double pressed_depth_mm(double rest_depth_mm, double pressed_mm, double reach_mm
   return 2.0 * c / (half_b + std::sqrt(discriminant));
 }
 
-double find_dent_reach_mm(const AcousticScene& scene, const ScanGeometry& geometry, const Pose& X_PT) noexcept {
+double find_dent_reach_mm(const AcousticScene& scene, const ScanGeometry& geometry, const Pose& X_PT,
+                          const motion::PatientMotion& motion) noexcept {
   const std::uint8_t fat = scene.table.find("adipose").value_or(0xFF);
   double sum_mm = 0.0;
   for (int n = 0; n < kReachLines; ++n) {
     const double line = (0.5 + n) / kReachLines * (geometry.lines - 1);
-    sum_mm += line_reach_mm(scene, fat, scanline(geometry, X_PT, line));
+    sum_mm += line_reach_mm(scene, motion, fat, scanline(geometry, X_PT, line));
   }
   return sum_mm / kReachLines;
 }

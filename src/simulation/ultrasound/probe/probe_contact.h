@@ -3,6 +3,7 @@
 #include <span>
 
 #include "geometry/pose.h"
+#include "motion/patient_motion.h"
 #include "ultrasound/probe/scan_geometry.h"
 #include "volume/grid.h"
 
@@ -31,7 +32,8 @@ float gap_coupling(float gap_mm) noexcept;
 /// Finds the contact of scanlines of a face at X_PT: `contact` is that of `first_line` and the following ones. Searches
 /// the skin along the scanline, forwards or backwards, to 0.02 mm. Real-time safe. physics.md U8.
 void find_contact(const volume::FloatGrid& skin_distance_mm, const ScanGeometry& geometry, const Pose& X_PT,
-                  std::span<LineContact> contact, int first_line = 0) noexcept;
+                  std::span<LineContact> contact, int first_line = 0,
+                  const motion::PatientMotion& motion = {}) noexcept;
 
 /// Default depth below which tissue does not yield. Half of a dent is left at 12 mm, as under a rigid disc as large as
 /// the face in B9. Range 12..60.
@@ -54,6 +56,7 @@ double pressed_depth_mm(double rest_depth_mm, double pressed_mm, double reach_mm
 
 /// Reach under a face at X_PT: longer in thick fat, which yields more than the muscle under it, and limited by bone.
 /// The value is a mean over the scanlines, so that it changes smoothly with the probe. Real-time safe.
-double find_dent_reach_mm(const AcousticScene& scene, const ScanGeometry& geometry, const Pose& X_PT) noexcept;
+double find_dent_reach_mm(const AcousticScene& scene, const ScanGeometry& geometry, const Pose& X_PT,
+                          const motion::PatientMotion& motion = {}) noexcept;
 
 }  // namespace trocar::ultrasound

@@ -253,6 +253,7 @@ Result<std::shared_ptr<const AcousticScene>> make_acoustic_scene(const anatomy::
   report(progress, "acoustic scene", 0.4);
   auto scene = std::make_shared<AcousticScene>();
   scene->ends = find_scan_ends(patient);
+  scene->motion = patient.motion;
   scene->skin_distance_mm = smooth_skin_distance(patient.skin_distance_mm, window.geometry);
   const double voxel_mm = std::min(source.geometry.spacing_mm[0], source.geometry.spacing_mm[1]);
   const double spacing_mm = std::max(options.spacing_mm, kLeastShareOfVoxel * voxel_mm);

@@ -21,7 +21,7 @@ struct AcousticPoint {
   double amplitude_db = 40.0;
 };
 
-/// Acoustic model of a patient in the resting anatomy; immutable, shared by all scanners. Frame P, mm.
+/// Acoustic model of a patient at rest; immutable, shared by all scanners. Frame A, mm.
 struct AcousticScene {
   /// Grid of `tissue` and `texture`; about isotropic.
   volume::GridGeometry geometry;
@@ -32,8 +32,9 @@ struct AcousticScene {
   std::vector<std::int8_t> texture;
   volume::FloatGrid skin_distance_mm;  ///< Negative inside.
   AcousticTable table;
-  std::vector<ScanEnd> ends;          ///< Ends of the CT within the body; empty: none.
-  std::vector<AcousticPoint> points;  ///< In addition to the tissue's scatterers; without shadows.
+  std::vector<ScanEnd> ends;                          ///< Ends of the CT within the body; empty: none.
+  std::vector<AcousticPoint> points;                  ///< In addition to the tissue's scatterers; without shadows.
+  std::shared_ptr<const motion::MotionModel> motion;  ///< The patient's, kept for the frames; may be null.
 };
 
 inline constexpr std::uint8_t kMixedCell = 0x80;

@@ -27,7 +27,7 @@ Status check_request(const FluoroscopyRequest& request) {
   if (!is_known)
     return fail_usage(fmt::format("the pulse rate is {:g} per s", request.pulses_per_s), "fluoroscopy",
                       "choose 7.5, 15 or 30");
-  if (!std::isfinite(request.time_s) || !request.X_PM.is_finite())
+  if (!std::isfinite(request.time_s) || !request.motion.is_finite())
     return fail_usage("time or motion of the patient is not a finite number", "fluoroscopy", "repair the caller");
   return {};
 }
@@ -110,7 +110,7 @@ Status Fluoroscope::Impl::expose(const FluoroscopyRequest& request, int pulses, 
   dose.beam_on_s += pulses / request.pulses_per_s;
   FluoroscopyFrame made;
   made.arm = request.arm;
-  made.X_PM = request.X_PM;
+  made.motion = request.motion;
   made.exposure = patient.exposure();
   made.time_s = request.time_s;
   made.is_subtracted = !difference.empty();
@@ -170,7 +170,7 @@ Result<FluoroscopyFrame> Fluoroscope::frame(const FluoroscopyRequest& request, s
   TROCAR_TRY_STATUS(check_c_arm(request.arm));
   FluoroscopyFrame dark;
   dark.arm = request.arm;
-  dark.X_PM = request.X_PM;
+  dark.motion = request.motion;
   dark.time_s = request.time_s;
   const auto pixels = static_cast<std::size_t>(request.arm.pixels);
   dark.gray = {request.arm.pixels, request.arm.pixels, std::vector<std::uint8_t>(pixels * pixels, 0)};

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "geometry/pose.h"
+#include "motion/patient_motion.h"
 #include "xray/contrast/iodine.h"
 #include "xray/fluoroscopy/display.h"
 #include "xray/fluoroscopy/dose.h"
@@ -28,9 +28,9 @@ struct FluoroscopyRequest {
   Tube filters;  ///< Filtration; exposure control selects the voltage.
   DoseMode dose_mode = DoseMode::kNormal;
   double pulses_per_s = 15.0;            ///< One of kPulseRates_per_s.
-  std::vector<ToolShape> tools;          ///< In P, not moved by X_PM.
+  std::vector<ToolShape> tools;          ///< In P.
   std::shared_ptr<const Iodine> iodine;  ///< In the body at rest; nullptr: none. Another pointer: changed.
-  Pose X_PM;                             ///< Pose of the moved body in P; identity at rest.
+  motion::PatientMotion motion;          ///< Where the patient is.
   bool is_pedal_down = false;
   double time_s = 0.0;  ///< Must not decrease while one patient is examined.
   ImageMode mode = ImageMode::kLive;
@@ -44,7 +44,7 @@ struct FluoroscopyFrame {
   bool is_subtracted = false;
   int mask_frames = 0;  ///< Frames in the mask of the subtraction.
   CArm arm;             ///< At the time of the pulse, as the next five.
-  Pose X_PM;
+  motion::PatientMotion motion;
   Exposure exposure;
   double time_s = 0.0;
   GrayWindow window;

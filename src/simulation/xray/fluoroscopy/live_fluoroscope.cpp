@@ -60,7 +60,7 @@ class FluoroscopyRenderer final : public LiveRenderer<FluoroscopyTraits> {
 
 bool FluoroscopySchedule::is_same(const FluoroscopyRequest& a, const FluoroscopyRequest& b) const noexcept {
   return a.arm == b.arm && a.filters == b.filters && a.dose_mode == b.dose_mode && a.pulses_per_s == b.pulses_per_s &&
-         a.mode == b.mode && a.display == b.display && detail::is_same_pose(a.X_PM, b.X_PM);
+         a.mode == b.mode && a.display == b.display && a.motion.is_same_place(b.motion);
 }
 
 double FluoroscopySchedule::work(const FluoroscopyRequest& request, Level) const noexcept {
@@ -93,7 +93,7 @@ void LiveFluoroscope::open(std::shared_ptr<const XrayVolume> volume) {
 }
 
 void LiveFluoroscope::request(FluoroscopyRequest request) {
-  if (!std::isfinite(request.time_s) || !request.X_PM.is_finite() || !(request.pulses_per_s > 0.0)) return;
+  if (!std::isfinite(request.time_s) || !request.motion.is_finite() || !(request.pulses_per_s > 0.0)) return;
   impl_->is_pedal_down = request.is_pedal_down;
   impl_->worker.request(std::move(request));
 }

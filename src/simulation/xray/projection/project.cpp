@@ -76,7 +76,7 @@ RowStack<float> rows_of(const volume::FloatGrid& grid, bool is_transposed) {
 
 }  // namespace
 
-void project(const XrayVolume& volume, const XrayRays& rays, const Pose& X_PM, MassImage& masses) {
+void project(const XrayVolume& volume, const XrayRays& rays, MassImage& masses) {
   const XrayVolume::Impl& impl = volume.impl();
   masses.columns = rays.columns;
   masses.rows = rays.rows;
@@ -86,7 +86,7 @@ void project(const XrayVolume& volume, const XrayRays& rays, const Pose& X_PM, M
     image.assign(masses.size(), 0.0F);
     images[static_cast<std::size_t>(basis)] = image.data();
   }
-  const IndexRays in_volume = detail::index_rays(rays, X_PM, impl.geometry);
+  const IndexRays in_volume = detail::index_rays(rays, impl.geometry);
   const auto stack_for = [&](const SlabPlan& plan) -> const RowStack<detail::PackedVoxel>& {
     return plan.axis_n == 0 ? impl.transposed : impl.rows;
   };
@@ -94,14 +94,14 @@ void project(const XrayVolume& volume, const XrayRays& rays, const Pose& X_PM, M
                 kCmPerMm * static_cast<float>(detail::kPackedUnit_g_per_cm3));
 }
 
-void project(const volume::FloatGrid& grid, const XrayRays& rays, const Pose& X_PM, std::vector<float>& integrals) {
+void project(const volume::FloatGrid& grid, const XrayRays& rays, std::vector<float>& integrals) {
   integrals.assign(
       static_cast<std::size_t>(std::max(rays.columns, 0)) * static_cast<std::size_t>(std::max(rays.rows, 0)), 0.0F);
   if (grid.empty()) return;
   float* const images[1] = {integrals.data()};
   const auto stack_for = [&](const SlabPlan& plan) { return rows_of(grid, plan.axis_n == 0); };
-  project_stack(detail::index_rays(rays, X_PM, grid.geometry), rays.columns, rays.rows, grid.geometry.size, stack_for,
-                images, kCmPerMm);
+  project_stack(detail::index_rays(rays, grid.geometry), rays.columns, rays.rows, grid.geometry.size, stack_for, images,
+                kCmPerMm);
 }
 
 }  // namespace trocar::xray

@@ -42,20 +42,6 @@ detail::PackedVoxel look_up(const PackedCurve& curve, std::int16_t hu) {
   return curve[static_cast<std::size_t>(std::clamp<int>(hu, kLowest_hu, kHighest_hu) - kLowest_hu)];
 }
 
-/// Both row stacks from `voxel(offset)`.
-template <class Voxel>
-void build_rows(const Voxel& voxel, XrayVolume::Impl& impl) {
-  const auto [i, j, k] = impl.geometry.size;
-  impl.rows = detail::make_row_stack<detail::PackedVoxel>(
-      i, j, k, [&, size_i = i, size_j = j](std::int64_t x, std::int64_t a, std::int64_t b) {
-        return voxel(static_cast<std::size_t>((b * size_j + a) * size_i + x));
-      });
-  impl.transposed = detail::make_row_stack<detail::PackedVoxel>(
-      j, i, k, [&, size_i = i, size_j = j](std::int64_t x, std::int64_t a, std::int64_t b) {
-        return voxel(static_cast<std::size_t>((b * size_j + x) * size_i + a));
-      });
-}
-
 Status check_ct(const volume::CtGrid& ct) {
   if (ct.empty() || ct.voxels.size() != ct.geometry.voxel_count())
     return fail("the patient has no CT, which X-ray images are computed from", "X-ray", "open a patient with a CT");
@@ -87,16 +73,12 @@ Result<std::shared_ptr<const XrayVolume>> XrayVolume::make(std::shared_ptr<const
       patient->skin_distance_mm.voxels.size() == count ? patient->skin_distance_mm.voxels.data() : nullptr;
   auto impl = std::make_shared<Impl>();
   impl->geometry = patient->ct.geometry;
-  build_rows(
-      [&](std::size_t n) -> detail::PackedVoxel {
-        if (skin_mm != nullptr && skin_mm[n] > static_cast<float>(kOutside_mm)) return 0;
-        return look_up(*curve_of[labels == nullptr ? 0 : labels[n]], ct[n]);
-      },
-      *impl);
+  impl->fill([&](std::size_t n) -> detail::PackedVoxel {
+    if (skin_mm != nullptr && skin_mm[n] > static_cast<float>(kOutside_mm)) return 0;
+    return look_up(*curve_of[labels == nullptr ? 0 : labels[n]], ct[n]);
+  });
   if (skin_mm != nullptr) impl->patient = std::move(patient);
-  auto volume = std::make_shared<XrayVolume>();
-  volume->impl_ = std::move(impl);
-  return volume;
+  return std::make_shared<const XrayVolume>(std::move(impl));
 }
 
 Result<std::shared_ptr<const XrayVolume>> XrayVolume::from_ct(const volume::CtGrid& ct) {
@@ -104,11 +86,11 @@ Result<std::shared_ptr<const XrayVolume>> XrayVolume::from_ct(const volume::CtGr
   const PackedCurve curve = pack_curve(water_and_bone_curve());
   auto impl = std::make_shared<Impl>();
   impl->geometry = ct.geometry;
-  build_rows([&](std::size_t n) { return look_up(curve, ct.voxels[n]); }, *impl);
-  auto volume = std::make_shared<XrayVolume>();
-  volume->impl_ = std::move(impl);
-  return volume;
+  impl->fill([&](std::size_t n) { return look_up(curve, ct.voxels[n]); });
+  return std::make_shared<const XrayVolume>(std::move(impl));
 }
+
+XrayVolume::XrayVolume(std::shared_ptr<const Impl> impl) noexcept : impl_(std::move(impl)) {}
 
 const volume::GridGeometry& XrayVolume::geometry() const noexcept {
   return impl_->geometry;
@@ -116,7 +98,8 @@ const volume::GridGeometry& XrayVolume::geometry() const noexcept {
 
 bool XrayVolume::is_inside_body(const Vec3& p_P) const noexcept {
   if (impl_->patient)
-    return volume::sample_nearest(impl_->patient->skin_distance_mm, p_P, static_cast<float>(kOutside_mm)) < 0.0F;
+    return volume::sample_nearest(impl_->patient->skin_distance_mm, impl_->motion.to_rest(p_P),
+                                  static_cast<float>(kOutside_mm)) < 0.0F;
   const Vec3 index = impl_->geometry.to_index(p_P);
   if (!index.allFinite() || index.cwiseAbs().maxCoeff() > 1e6) return false;
   const volume::Index3 ijk{std::llround(index.x()), std::llround(index.y()), std::llround(index.z())};

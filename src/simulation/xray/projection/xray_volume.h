@@ -23,13 +23,14 @@ class XrayVolume {
   bool is_inside_body(const Vec3& p_P) const noexcept;
 
   struct Impl;
+  explicit XrayVolume(std::shared_ptr<const Impl> impl) noexcept;
   const Impl& impl() const noexcept { return *impl_; }
 
  private:
   std::shared_ptr<const Impl> impl_;
 };
 
-/// One clear line if the source or the detector of a C-arm would be inside the patient's body (at rest). Exit status 2.
+/// One clear line if the source or the detector of a C-arm would be inside the patient's body. Exit status 2.
 Status check_source(const XrayVolume& volume, const CArm& arm);
 
 }  // namespace trocar::xray

@@ -1,6 +1,8 @@
 #include "xray/tools/iodine_pieces.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "xray/tools/detail/tube_piece.h"
 
@@ -38,14 +40,21 @@ void add_iodine(const std::vector<IodinePiece>& pieces, const XrayRays& rays, st
   detail::add_pieces(cones, rays, iodine_g_per_cm2);
 }
 
-XrayRays rays_in_body(const XrayRays& rays, const Pose& X_PM) noexcept {
-  const Pose X_MP = X_PM.inverse();
-  XrayRays moved = rays;
-  moved.source_P = X_MP * rays.source_P;
-  moved.first_pixel_P = X_MP * rays.first_pixel_P;
-  moved.column_P = X_MP.R() * rays.column_P;
-  moved.row_P = X_MP.R() * rays.row_P;
-  return moved;
+std::vector<IodinePiece> moved_pieces(std::vector<IodinePiece> pieces, const motion::PatientMotion& motion) {
+  if (motion.is_rest()) return pieces;
+  for (IodinePiece& piece : pieces) {
+    const Vec3 middle_A = 0.5 * (piece.a_P + piece.b_P), along_A = piece.b_P - piece.a_P;
+    piece.a_P = motion.to_now(piece.a_P);
+    piece.b_P = motion.to_now(piece.b_P);
+    const Mat3 jacobian = motion.jacobian(middle_A);
+    const double volume = jacobian.determinant(), length_mm = along_A.norm();
+    const double stretch = length_mm > 0.0 ? (jacobian * along_A).norm() / length_mm : 1.0;
+    const double widening = std::sqrt(volume / stretch);
+    piece.radius_a_mm *= widening;
+    piece.radius_b_mm *= widening;
+    piece.iodine_mg_per_ml /= volume;
+  }
+  return pieces;
 }
 
 }  // namespace trocar::xray

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "motion/patient_motion.h"
 #include "xray/contrast/iodine.h"
 #include "xray/geometry/c_arm.h"
 
@@ -12,7 +13,8 @@ namespace trocar::xray {
 /// ignored. `rays` are in the frame of the pieces; an empty image is made. All cores.
 void add_iodine(const std::vector<IodinePiece>& pieces, const XrayRays& rays, std::vector<float>& iodine_g_per_cm2);
 
-/// The same rays, seen from a body that moved by X_PM.
-XrayRays rays_in_body(const XrayRays& rays, const Pose& X_PM) noexcept;
+/// Pieces at rest, in frame A, as they are now: their ends move with the tissue, their radii and concentrations change
+/// with its stretch so that each keeps its mass.
+std::vector<IodinePiece> moved_pieces(std::vector<IodinePiece> pieces, const motion::PatientMotion& motion);
 
 }  // namespace trocar::xray

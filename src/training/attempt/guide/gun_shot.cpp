@@ -16,8 +16,8 @@ GunShot make_gun_shot(const cases::Case& the_case, const telemetry::TickSample& 
   shot.depth_mm = telemetry::is_in_body(fired) ? fired.depth_mm : 0.0;
   shot.throw_mm = needle.throw_mm;
   if (shot.is_in_body()) {
-    shot.throw_mm = scoring::stylet_throw_mm(the_case.task, patient, needle, fired.tip_mm, fired.axis);
-    shot.core = scoring::take_core(the_case.task, patient, needle, fired.tip_mm, fired.axis);
+    shot.throw_mm = scoring::stylet_throw_mm(the_case.task, patient, needle, fired.rest_tip_mm, fired.rest_axis);
+    shot.core = scoring::take_core(the_case.task, patient, needle, fired.rest_tip_mm, fired.rest_axis);
     for (const scoring::CorePiece& piece : shot.core.pieces)
       shot.pieces.push_back({part_of(the_case.task, patient, piece), piece.label, piece.from_mm, piece.to_mm});
   }

@@ -23,7 +23,7 @@ NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample&
   if (sample.tissue == 0 || sample.tissue >= the_case.tissues.tissues.size()) return view;
   const anatomy::Label* label = sample.tissue == the_case.tissues.skin
                                     ? nullptr
-                                    : anatomy::find_label(*the_case.patient, telemetry::pierced_tip_mm(sample));
+                                    : anatomy::find_label(*the_case.patient, telemetry::pierced_rest_tip_mm(sample));
   view.tissue = anatomy::structure_words(label != nullptr ? label->name : the_case.tissues.tissues[sample.tissue].name);
   return view;
 }

@@ -19,9 +19,9 @@ constexpr double kLookStep_mm = 0.5;
 /// Distance ahead of the tip that the needle, or the stylet of its gun, still has to go.
 double still_to_go_mm(const cases::Case& the_case, const telemetry::TickSample& sample) {
   const Segment& path_P = the_case.plan.line_P;
-  const Vec3 to_target = path_P.b - sample.tip_mm;
-  const double left_mm = to_target.dot(sample.axis);
-  const bool is_aimed = (to_target - left_mm * sample.axis).norm() <= the_case.task.target_tolerance_mm;
+  const Vec3 to_target = path_P.b - sample.rest_tip_mm;
+  const double left_mm = to_target.dot(sample.rest_axis);
+  const bool is_aimed = (to_target - left_mm * sample.rest_axis).norm() <= the_case.task.target_tolerance_mm;
   if (!is_aimed) return kGuideAhead_mm;
   const double throw_mm = the_case.needle.is_biopsy ? the_case.needle.throw_mm : 0.0;
   if (left_mm > kGuideAhead_mm) return kGuideAhead_mm;
@@ -31,10 +31,10 @@ double still_to_go_mm(const cases::Case& the_case, const telemetry::TickSample& 
 /// What the tip is in, or will harm.
 std::string danger_ahead(const cases::Case& the_case, const telemetry::TickSample& sample) {
   const double far_mm = still_to_go_mm(the_case, sample);
-  const Vec3 tip_P = telemetry::pierced_tip_mm(sample);
+  const Vec3 tip_P = telemetry::pierced_rest_tip_mm(sample);
   for (double ahead_mm = 0.0; ahead_mm <= far_mm; ahead_mm += kLookStep_mm) {
-    const Vec3 from_P = ahead_mm > 0.0 ? sample.tip_mm : tip_P;
-    const anatomy::Label* label = anatomy::find_label(*the_case.patient, from_P + ahead_mm * sample.axis);
+    const Vec3 from_P = ahead_mm > 0.0 ? sample.rest_tip_mm : tip_P;
+    const anatomy::Label* label = anatomy::find_label(*the_case.patient, from_P + ahead_mm * sample.rest_axis);
     if (label == nullptr) continue;
     const bool is_bone = label->tissue == "bone";
     if (!is_bone && find_harm(the_case.task, *label).grade == tasks::Harm::kNone) continue;
@@ -47,16 +47,16 @@ std::string danger_ahead(const cases::Case& the_case, const telemetry::TickSampl
 }
 
 std::string guide_outside(const Segment& path_P, const telemetry::TickSample& sample) {
-  const Vec3 to_entry = path_P.a - sample.tip_mm;
+  const Vec3 to_entry = path_P.a - sample.rest_tip_mm;
   const Vec3 axis = path_P.direction();
   const Vec3 across = to_entry - to_entry.dot(axis) * axis;
   if (across.norm() > kFarFromEntry_mm) return "The entry is " + anatomy::direction_words(across, " mm");
   if (across.norm() > kGuideBeside_mm)
     return fmt::format("{:.1f} mm from the entry: move the tip {}", across.norm(), anatomy::direction_words(across));
-  const double angle_deg = kDegPerRad * angle_between_rad(sample.axis, axis);
+  const double angle_deg = kDegPerRad * angle_between_rad(sample.rest_axis, axis);
   if (angle_deg > kGuideTilt_deg)
     return fmt::format("{:.0f} degrees off the path: tilt the hub {}", angle_deg,
-                       anatomy::direction_words(sample.axis - axis));
+                       anatomy::direction_words(sample.rest_axis - axis));
   return "On the path: advance";
 }
 
@@ -81,7 +81,7 @@ std::string at_target_words(const cases::Case& the_case) {
 std::string beside_target(const cases::Case& the_case, const telemetry::TickSample& sample, const Vec3& across) {
   const std::string name = anatomy::structure_words(
       the_case.task.target_tissues.empty() ? the_case.task.organ : the_case.task.target_tissues.front());
-  if (is_in_target(the_case, sample.tip_mm)) return "On the wall of the " + name + ": press on until it gives way";
+  if (is_in_target(the_case, sample.rest_tip_mm)) return "On the wall of the " + name + ": press on until it gives way";
   if (across.norm() < 0.5) return "Beside the " + name + ": advance or pull back by a millimetre";
   return fmt::format("Beside the {}: pull back a little and tilt the tip {}", name, anatomy::direction_words(across));
 }
@@ -89,17 +89,17 @@ std::string beside_target(const cases::Case& the_case, const telemetry::TickSamp
 std::string guide_inside(const cases::Case& the_case, const telemetry::TickSample& sample) {
   const Segment& path_P = the_case.plan.line_P;
   const Vec3 axis = path_P.direction();
-  const Vec3 to_target = path_P.b - sample.tip_mm;
+  const Vec3 to_target = path_P.b - sample.rest_tip_mm;
   const double left_mm = to_target.dot(axis);
   const Vec3 across = to_target - left_mm * axis;
   const double beside_mm = across.norm();
   const bool is_near = std::abs(left_mm) <= kGuideDepth_mm && beside_mm <= the_case.task.target_tolerance_mm;
   const bool is_structure = !is_place(the_case) && !the_case.needle.is_biopsy;
-  if (is_structure && is_in_target(the_case, telemetry::pierced_tip_mm(sample))) return at_target_words(the_case);
+  if (is_structure && is_in_target(the_case, telemetry::pierced_rest_tip_mm(sample))) return at_target_words(the_case);
   if (is_near) return is_structure ? beside_target(the_case, sample, across) : at_target_words(the_case);
   if (left_mm < -kGuideDepth_mm) return fmt::format("{:.1f} mm too deep: pull back", -left_mm);
   if (beside_mm > kGuideBeside_mm) {
-    const double turn_deg = kDegPerRad * angle_between_rad(sample.axis, to_target);
+    const double turn_deg = kDegPerRad * angle_between_rad(sample.rest_axis, to_target);
     return fmt::format("{:.1f} mm from the path: tilt the tip {} by {:.0f} degrees", beside_mm,
                        anatomy::direction_words(across), std::min(turn_deg, 90.0));
   }
@@ -136,7 +136,7 @@ std::string guide_to_end(const cases::Case& the_case, const telemetry::TickSampl
 }  // namespace
 
 std::string guide_puncture(const cases::Case& the_case, const telemetry::TickSample& sample, const GuideState& state) {
-  if (!sample.tip_mm.allFinite() || !(std::abs(sample.axis.norm() - 1.0) < 1e-3)) return {};
+  if (!sample.rest_tip_mm.allFinite() || !(std::abs(sample.rest_axis.norm() - 1.0) < 1e-3)) return {};
   if (!state.is_loaded) return guide_after_shot(the_case, sample, state);
   if (std::string end = guide_to_end(the_case, sample, state); !end.empty()) return end;
   if (std::string danger = danger_ahead(the_case, sample); !danger.empty()) return danger;

@@ -116,6 +116,7 @@ class AttemptLoop {
 
   // attempt_publish.cpp
   AttemptPhase phase_now() const;
+  motion::PatientMotion motion_now();
   NeedleView needle_now() const;
   TransducerView transducer_now() const;
   void add_servers(AttemptView& view) const;
@@ -139,6 +140,8 @@ class AttemptLoop {
   tasks::HandCommand command_;       ///< Command of the needle's hand.
   std::size_t next_parameters_ = 1;  ///< Index into the performer's parameters; the first ones are part of the scene.
   std::optional<telemetry::TickSample> last_needle_, last_transducer_;
+  motion::MotionDrive drive_;  ///< Of the needle's newest scene, drive_scene_.
+  std::uint64_t drive_scene_ = 0;
   telemetry::NeedleShape needle_shape_;                   ///< The newest one.
   double needle_time_s_ = 0.0, transducer_time_s_ = 0.0;  ///< Times of the servers' last ticks.
   double transducer_on_s_ = 0.0;                          ///< Time at which the transducer's forces were switched on.

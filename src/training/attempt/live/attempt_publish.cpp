@@ -9,6 +9,7 @@
 #include "attempt/guide/transducer_guide.h"
 #include "attempt/live/attempt_loop.h"
 #include "core/ascii.h"
+#include "haptics/scene_options.h"
 #include "telemetry/tick_pose.h"
 
 namespace trocar::attempt {
@@ -53,6 +54,19 @@ AttemptPhase AttemptLoop::phase_now() const {
                                           last_needle_->phase == telemetry::InsertionPhase::kRetracting ||
                                           last_needle_->depth_mm > case_.the_case->tissues.skin_thickness_mm);
   return is_inside ? AttemptPhase::kInBody : AttemptPhase::kReady;
+}
+
+motion::PatientMotion AttemptLoop::motion_now() {
+  const motion::MotionModel* const model = case_.the_case->patient->motion.get();
+  if (model == nullptr || !last_needle_) return {};
+  const KnownScenes& scenes = needle_->scenes();
+  if (const SceneParameters* newest = scenes.newest(); newest != nullptr && scenes.newest_number() != drive_scene_) {
+    haptics::HapticOptions options;
+    haptics::DeviceCapability device;
+    if (haptics::restore_options(newest->options, options, device)) drive_ = options.motion;
+    drive_scene_ = scenes.newest_number();
+  }
+  return {model, motion::state_of_phase(drive_, last_needle_->breathing, last_needle_->time_s)};
 }
 
 NeedleView AttemptLoop::needle_now() const {
@@ -195,6 +209,7 @@ void AttemptLoop::publish(AttemptPhase phase, std::optional<Result<RunResult>> r
   view.message = message_;
   view.recovered = recovered_;
   view.recoveries = recoveries_;
+  view.motion = motion_now();
   view.needle = needle_now();
   view.probe = transducer_now();
   view.has_probe = transducer_ != nullptr;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/pose.h"
+#include "motion/patient_motion.h"
 #include "tasks/harm.h"
 #include "telemetry/tick_sample.h"
 
@@ -96,8 +97,9 @@ struct AttemptView {
   std::vector<PhaseView> phases;   ///< Empty in an exam, and for a task without phases.
   std::optional<std::size_t> current_phase;  ///< The first one that is open and not done.
   bool is_stylet_drawn = false, is_breath_held = false;
-  double wire_mm = 0.0;  ///< Guide wire beyond the tip; 0: none in the needle.
-  std::string hint;      ///< Instruction for the trainee (guided attempts only); may be empty.
+  double wire_mm = 0.0;          ///< Guide wire beyond the tip; 0: none in the needle.
+  std::string hint;              ///< Instruction for the trainee (guided attempts only); may be empty.
+  motion::PatientMotion motion;  ///< Where the patient was at the newest tick of the needle.
   NeedleView needle;
   TransducerView probe;
   bool has_probe = false;

@@ -77,6 +77,7 @@ Result<SceneSchedule> SceneSchedule::make(const cases::Case& the_case, const Per
                                           const RunOptions& options, const haptics::DevicePreset& device) {
   haptics::HapticOptions haptics;
   haptics.seed = options.seed;
+  haptics.motion = options.motion;
   haptics::apply_device_preset(device, haptics);
   SceneSchedule schedule;
   if (performer.parameters.empty()) {
@@ -132,6 +133,11 @@ class RecordedTicks {
     const telemetry::TickSample& sample = session_->samples[std::min(tick, session_->samples.size() - 1)];
     const telemetry::ToolPose tool{sample.device_rotation_wxyz, sample.device_mm};
     return tool.is_valid() ? tool : telemetry::to_tool_pose(telemetry::device_pose(sample));
+  }
+  /// Where the patient is: as its clock says, or as recorded.
+  motion::PatientMotion motion(std::size_t tick, const haptics::HapticScene& scene) const noexcept {
+    if (session_ == nullptr || session_->samples.empty()) return scene.motion_at(time_s(tick));
+    return scene.motion_of(session_->samples[std::min(tick, session_->samples.size() - 1)]);
   }
   /// The interruption that ends at the tick; null: none.
   const tasks::Interruption* interruption(std::size_t tick) const noexcept {
@@ -192,7 +198,8 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     }
 
     const telemetry::ToolPose tool = recorded.tool(i).value_or(telemetry::to_tool_pose(device.X_PN));
-    const haptics::HapticOutput output = tick(state, {view.time_s, view.dt_s, tool}, scene);
+    const haptics::HapticOutput output =
+        tick(state, {view.time_s, view.dt_s, tool, true, recorded.motion(i, scene)}, scene);
     view.X_PN_device = device.X_PN;
     view.last = output.sample;
     record.note(command);

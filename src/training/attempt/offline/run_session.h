@@ -21,6 +21,7 @@ struct RunOptions {
   std::string device = "premium";  ///< Name in data/devices.toml; its limits and coupling are simulated.
   double rate_hz = 1000.0;         ///< 250..4000. A replay uses its session's rate.
   std::uint64_t seed = 1;          ///< Seed of operator, friction and plan.
+  motion::MotionDrive motion;      ///< Of a patient with a motion model, in session time. A replay uses its session's.
   std::string patient_source;      ///< As given by the user: a folder, or an embedded patient's name.
   std::uint64_t patient_seed = 1;
   std::filesystem::path session;      ///< Written here; must not exist.

@@ -31,6 +31,7 @@ storage::SessionInfo describe(const cases::Case& the_case, const RecordOptions& 
   info.patient_name = the_case.patient->name;
   info.patient_source = io::absolute_source(options.patient_source);
   info.patient_hash = the_case.patient->content_hash;
+  info.motion_hash = anatomy::motion_hash(*the_case.patient);
   info.patient_seed = options.patient_seed;
   info.operator_name = options.operator_name;
   info.force_model = facts.force_model;
@@ -125,11 +126,11 @@ Result<std::optional<tasks::Action>> AttemptRecord::act(const tasks::ActionReque
   if (session_.samples.empty()) return std::optional<tasks::Action>();
   const telemetry::TickSample& sample = session_.samples.back();
   if (!is_possible(request.kind, sample.depth_mm)) return std::optional<tasks::Action>();
-  tasks::Action action{sample.time_s, request.kind, request.amount, {}, sample.tip_mm, sample.depth_mm};
+  tasks::Action action{sample.time_s, request.kind, request.amount, {}, sample.rest_tip_mm, sample.depth_mm};
   if (!session_.actions.empty()) action.time_s = std::max(action.time_s, session_.actions.back().time_s + kLater_s);
   if (request.kind == tasks::ActionKind::kDrawStylet || request.kind == tasks::ActionKind::kAspirate)
     action.result = tasks::what_returns(the_case_->substances, *the_case_->patient, the_case_->needle,
-                                        telemetry::pierced_tip_mm(sample), sample.axis,
+                                        telemetry::pierced_rest_tip_mm(sample), sample.rest_axis,
                                         request.kind == tasks::ActionKind::kAspirate);
   if (request.kind == tasks::ActionKind::kAdvanceWire) action.amount = wire_way_mm(sample, request.amount);
   TROCAR_TRY_STATUS(append(action));
@@ -140,7 +141,7 @@ Result<std::optional<tasks::Action>> AttemptRecord::act(const tasks::ActionReque
 double AttemptRecord::wire_way_mm(const telemetry::TickSample& sample, double wanted_mm) const {
   if (the_case_->ducts == nullptr) return wanted_mm;
   const std::vector<Vec3> way_P =
-      xray::guide_wire_way(*the_case_->ducts, telemetry::pierced_tip_mm(sample), sample.axis, wanted_mm);
+      xray::guide_wire_way(*the_case_->ducts, telemetry::pierced_rest_tip_mm(sample), sample.rest_axis, wanted_mm);
   double way_mm = 0.0;
   for (std::size_t n = 1; n < way_P.size(); ++n) way_mm += (way_P[n] - way_P[n - 1]).norm();
   return way_mm;

@@ -9,6 +9,7 @@
 #include "attempt/guide/needle_shaft.h"
 #include "attempt/live/attempt_event.h"
 #include "attempt/record/score_session.h"
+#include "attempt/record/session_case.h"
 #include "geometry/segment.h"
 
 namespace trocar::attempt {
@@ -36,6 +37,7 @@ Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_pt
   if (session.samples.empty()) return fail("the attempt ended before its first tick", {}, "start another one");
   if (session.info.patient_hash != open->the_case.patient->content_hash)
     return fail("the session is of another patient than the case", {}, "open that patient first");
+  TROCAR_TRY_STATUS(check_motion(session, *open->the_case.patient));
   const bool was_cut_off = !session.outcome.has_value();
   if (was_cut_off) {
     session.outcome = score_session(open->the_case, session);
@@ -44,7 +46,10 @@ Result<AttemptReplay> AttemptReplay::of(storage::Session session, std::shared_pt
 }
 
 AttemptReplay::AttemptReplay(storage::Session session, std::shared_ptr<const cases::OpenCase> open, bool was_cut_off)
-    : session_(std::move(session)), open_(std::move(open)), was_cut_off_(was_cut_off) {
+    : session_(std::move(session)),
+      open_(std::move(open)),
+      motion_(session_, *open_->the_case.patient),
+      was_cut_off_(was_cut_off) {
   for (const std::size_t fired : session_.shots)
     shots_.push_back(make_gun_shot(open_->the_case, session_.samples[fired]));
   find_moments();
@@ -94,7 +99,7 @@ std::optional<Pose> AttemptReplay::transducer_at(double time_s) const noexcept {
 }
 
 InjectionSteps AttemptReplay::injections() const {
-  return injection_steps(session_.xray, [this](double time_s) { return at(time_s).tip_mm; });
+  return injection_steps(session_.xray, [this](double time_s) { return at(time_s).rest_tip_mm; });
 }
 
 void AttemptReplay::find_moments() {
@@ -143,7 +148,7 @@ void AttemptReplay::find_worst() {
   double farthest_s = 0.0;
   for (const telemetry::TickSample& sample : session_.samples) {
     if (sample.depth_mm < kInside_mm) continue;
-    const double beside_mm = distance_to_line_mm(plan_P.a, direction_P, sample.tip_mm);
+    const double beside_mm = distance_to_line_mm(plan_P.a, direction_P, sample.rest_tip_mm);
     if (beside_mm <= farthest_mm) continue;
     farthest_mm = beside_mm;
     farthest_s = sample.time_s;

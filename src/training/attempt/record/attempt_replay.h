@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "attempt/guide/gun_shot.h"
+#include "attempt/record/session_motion.h"
 #include "attempt/record/xray_replay.h"
 #include "cases/open_case.h"
 #include "core/result.h"
@@ -38,6 +39,8 @@ class AttemptReplay {
   double duration_s() const noexcept { return session_.samples.back().time_s; }
   /// The tick at a time; before the first or after the last tick, that tick.
   const telemetry::TickSample& at(double time_s) const noexcept;
+  /// Where the patient was at that tick.
+  motion::PatientMotion motion_at(double time_s) const noexcept { return motion_.at(at(time_s)); }
   /// See needle_shaft.h; straight in a session of an older program.
   std::vector<Vec3> shaft_at(double time_s) const;
   /// X_PT, interpolated between the recorded samples; constant in a gap of more than kTransducerGap_s. Empty: the
@@ -66,6 +69,7 @@ class AttemptReplay {
 
   storage::Session session_;
   std::shared_ptr<const cases::OpenCase> open_;
+  SessionMotion motion_;
   bool was_cut_off_;
   std::vector<GunShot> shots_;
   std::vector<metrics::HarmEvent> harms_;  ///< The gravest first.

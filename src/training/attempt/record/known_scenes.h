@@ -34,6 +34,7 @@ class KnownScenes {
     return found == scenes_.end() ? nullptr : &found->second;
   }
   const SceneParameters* newest() const { return find(newest_); }
+  std::uint64_t newest_number() const noexcept { return newest_; }  ///< 0: none.
 
  private:
   std::map<std::uint64_t, SceneParameters> scenes_;

@@ -57,9 +57,19 @@ Result<std::vector<storage::SessionParameters>> replay_parameters(const storage:
   return all;
 }
 
+Status check_motion(const storage::Session& session, const anatomy::VirtualPatient& patient) {
+  const std::string now = anatomy::motion_hash(patient);
+  if (session.info.motion_hash.empty() || session.info.motion_hash == now) return {};
+  return fail_usage(
+      fmt::format("the patient moved in another way when the session was recorded: hash {} of motion.toml, "
+                  "this one has {}",
+                  session.info.motion_hash, now.empty() ? "none" : now),
+      patient.name, "restore the patient's motion.toml of that time, or add --other-patient");
+}
+
 Status check_patient(const storage::Session& session, const anatomy::VirtualPatient& patient) {
   const storage::SessionInfo& info = session.info;
-  if (info.patient_hash == patient.content_hash) return {};
+  if (info.patient_hash == patient.content_hash) return check_motion(session, patient);
   return fail_usage(fmt::format("the session was recorded in another patient: content hash {}, this one has {}",
                                 info.patient_hash, patient.content_hash),
                     patient.name,
@@ -100,6 +110,7 @@ link::SetParameters as_command(const storage::SessionParameters& parameters) {
   if (has("coupling.stiffness=")) command.coupling_stiffness_n_per_mm = options.coupling.stiffness_n_per_mm;
   if (has("coupling.damping=")) command.coupling_damping_ns_per_mm = options.coupling.damping_ns_per_mm;
   if (has("bending=")) command.has_bending = options.has_bending;
+  if (has("motion.")) command.motion = options.motion;
   command.tissues_toml = parameters.tissue_table_toml;
   return command;
 }

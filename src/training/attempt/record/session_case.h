@@ -33,7 +33,10 @@ Result<cases::Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> 
                                  const storage::Session& session, const storage::SessionParameters& first,
                                  bool is_other_patient_meant = false);
 
-/// Checks that the session was recorded in that patient (exit status 2 if not).
+/// Error (exit status 2): the patient's motion model is not that of the session. A session without one was recorded at
+/// rest, whatever the patient has now.
+Status check_motion(const storage::Session& session, const anatomy::VirtualPatient& patient);
+/// Checks that the session was recorded in that patient, which moved in the same way (exit status 2 if not).
 Status check_patient(const storage::Session& session, const anatomy::VirtualPatient& patient);
 
 /// SetParameters message that gives a loaded scene these parameters.

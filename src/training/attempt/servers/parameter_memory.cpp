@@ -9,6 +9,7 @@ void ParameterMemory::apply(const link::SetParameters& message) {
   if (!message.force_model.empty()) all_.force_model = message.force_model;
   if (message.coupling_stiffness_n_per_mm) all_.coupling_stiffness_n_per_mm = message.coupling_stiffness_n_per_mm;
   if (message.coupling_damping_ns_per_mm) all_.coupling_damping_ns_per_mm = message.coupling_damping_ns_per_mm;
+  if (message.motion) all_.motion = message.motion;
   if (message.has_bending) all_.has_bending = message.has_bending;
 }
 

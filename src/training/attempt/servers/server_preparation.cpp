@@ -160,13 +160,19 @@ Status ServerSupervisor::step_loading() {
   return {};
 }
 
+/// Times of this program's clock become those of the server's.
+std::uint32_t ServerSupervisor::send(link::SetParameters message) {
+  if (message.motion) message.motion->begins_s += client_.clock_offset_s;
+  return connection_->send(message);
+}
+
 void ServerSupervisor::adjust() {
   adjusted_ = memory_.message();
   if (adjusted_ == link::SetParameters{}) {
     enter(ServerState::kPlacing);
     return;
   }
-  asked_ = connection_->send(adjusted_);
+  asked_ = send(adjusted_);
   enter(ServerState::kAdjusting);
 }
 
@@ -247,7 +253,7 @@ void ServerSupervisor::become_on() {
         fmt::format("{}. The forces are on again and the puncture continues", detail::sentence(interrupted_by_));
   interrupted_by_.clear();
   const link::SetParameters now = memory_.message();  // it may have changed while the forces were being switched on
-  if (now != adjusted_) unanswered_[connection_->send(now)] = memory_;
+  if (now != adjusted_) unanswered_[send(now)] = memory_;
 }
 
 }  // namespace trocar::attempt

@@ -319,7 +319,7 @@ void ServerSupervisor::set_target(const link::HandTarget& target) {
 void ServerSupervisor::set_parameters(const link::SetParameters& message) {
   const ParameterMemory before = memory_;
   memory_.apply(message);
-  if (is_fresh()) unanswered_[connection_->send(message)] = before;
+  if (is_fresh()) unanswered_[send(message)] = before;
 }
 
 void ServerSupervisor::stop_forces() {

@@ -98,7 +98,8 @@ class ServerSupervisor {
   int activations() const noexcept { return activations_; }       ///< Number of times that kOn was reached.
   /// Ignored unless is_fresh().
   void set_target(const link::HandTarget& target);
-  /// Sent now in kOn, and again whenever the server is prepared.
+  /// Sent now in kOn, and again whenever the server is prepared. The times of its motion are those of this program's
+  /// steady clock.
   void set_parameters(const link::SetParameters& message);
   void stop_forces();
   void resume_forces();
@@ -139,6 +140,7 @@ class ServerSupervisor {
   Status wait_for_control();
   Status reset_fault();
   Status step_loading();
+  std::uint32_t send(link::SetParameters message);
   void adjust();
   void step_adjusting();
   Status step_placing();

@@ -6,7 +6,6 @@
 
 #include "attempt/tools/led_pose.h"
 #include "geometry/clamp_norm.h"
-#include "volume/sampling.h"
 
 namespace trocar::attempt {
 namespace {
@@ -19,13 +18,12 @@ Vec3 bounded(const Vec3& shift_P) {
 
 /// Moves a point along the skin, then projects it onto the skin. The shift is brought onto the skin's plane along the
 /// view, so that the point follows a pointer; along the normal where the view grazes the skin.
-Vec3 moved_on_skin(const anatomy::VirtualPatient& patient, const Vec3& skin_P, const Vec3& shift_P,
-                   const Vec3& seen_along_P) {
+Vec3 moved_on_skin(const anatomy::SkinNow& skin, const Vec3& skin_P, const Vec3& shift_P, const Vec3& seen_along_P) {
   constexpr double kGrazing = 0.3;  // cosine between view and normal
-  const Vec3 inward_P = skin_inward(patient, skin_P);
+  const Vec3 inward_P = skin.inward(skin_P);
   const bool is_seen = std::abs(inward_P.dot(seen_along_P)) > kGrazing;
   const Vec3& along_P = is_seen ? seen_along_P : inward_P;
-  return nearest_skin_point(patient, skin_P + shift_P - inward_P.dot(shift_P) / inward_P.dot(along_P) * along_P);
+  return skin.nearest(skin_P + shift_P - inward_P.dot(shift_P) / inward_P.dot(along_P) * along_P);
 }
 
 /// The direction, turned towards the skin's normal if it is flatter than allowed.
@@ -46,13 +44,13 @@ Vec3 leaned(const Vec3& axis_P, const Vec3& right_P, const Vec3& down_P, double 
 
 /// Moves a point along the skin towards another one by at most `most_mm`. The other one itself if it is as near as
 /// that, or if the way along the skin comes no nearer.
-Vec3 stepped_on_skin(const anatomy::VirtualPatient& patient, const Vec3& from_P, const Vec3& to_P, double most_mm) {
+Vec3 stepped_on_skin(const anatomy::SkinNow& skin, const Vec3& from_P, const Vec3& to_P, double most_mm) {
   const Vec3 left_P = to_P - from_P;
   if (!(left_P.norm() > most_mm)) return to_P;
-  const Vec3 inward_P = skin_inward(patient, from_P);
+  const Vec3 inward_P = skin.inward(from_P);
   const Vec3 along_P = left_P - inward_P.dot(left_P) * inward_P;
   if (along_P.norm() < 1e-6) return to_P;
-  const Vec3 next_P = nearest_skin_point(patient, from_P + most_mm * along_P.normalized());
+  const Vec3 next_P = skin.nearest(from_P + most_mm * along_P.normalized());
   constexpr double kLeastGain = 0.1;  // of the step
   return (to_P - next_P).norm() < left_P.norm() - kLeastGain * most_mm ? next_P : to_P;
 }
@@ -66,47 +64,40 @@ double turn_share(double left_mm, double left_rad, double most_mm, double most_r
 
 }  // namespace
 
-Vec3 nearest_skin_point(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept {
-  Vec3 q_P = p_P;
-  constexpr int kSteps = 8;
-  for (int step = 0; step < kSteps; ++step) {
-    const double distance_mm = volume::sample_linear(patient.skin_distance_mm, q_P);
-    if (std::abs(distance_mm) < 1e-3) break;
-    q_P += distance_mm * skin_inward(patient, q_P);
-  }
-  return q_P;
+PointerNeedle::PointerNeedle(const anatomy::VirtualPatient& patient, const Segment& path_A, double length_mm)
+    : patient_(&patient), skin_(patient), length_mm_(length_mm), entry_P_(path_A.a), axis_P_(path_A.direction()) {
+  aim_at(path_A);
 }
 
-Vec3 skin_inward(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept {
-  const Vec3 outward_P = volume::gradient_per_mm(patient.skin_distance_mm, p_P);
-  const double size = outward_P.norm();
-  return size > 1e-6 ? Vec3(-outward_P / size) : Vec3(0.0, 1.0, 0.0);
+void PointerNeedle::set_motion(const motion::PatientMotion& motion) {
+  if (motion.is_same_place(skin_.motion())) return;
+  const Vec3 entry_A = skin_.motion().to_rest(entry_P_);
+  skin_ = anatomy::SkinNow(*patient_, motion);
+  entry_P_ = motion.to_now(entry_A);
+  update();
 }
 
-PointerNeedle::PointerNeedle(const anatomy::VirtualPatient& patient, const Segment& path_P, double length_mm)
-    : patient_(&patient), length_mm_(length_mm), entry_P_(path_P.a), axis_P_(path_P.direction()) {
-  aim_at(path_P);
-}
-
-void PointerNeedle::aim_at(const Segment& path_P) {
+void PointerNeedle::aim_at(const Segment& path_A) {
+  const Segment path_P = skin_.path_now(path_A);
   entry_P_ = path_P.a;
   axis_P_ = path_P.direction();
   past_mm_ = -kAbove_mm;
   update();
 }
 
-bool PointerNeedle::approach(const Segment& path_P, double most_mm, double most_rad) {
+bool PointerNeedle::approach(const Segment& path_A, double most_mm, double most_rad) {
   if (is_past_skin()) return true;
+  const Segment path_P = skin_.path_now(path_A);
   const Vec3 goal_axis_P = path_P.direction();
   const double left_rad = angle_between_rad(axis_P_, goal_axis_P);
   const double left_mm = (path_P.a - entry_P_).norm();
   const double share = turn_share(left_mm, left_rad, most_mm, most_rad);
   past_mm_ = std::min(past_mm_, -kAbove_mm);
-  entry_P_ = stepped_on_skin(*patient_, entry_P_, path_P.a, most_mm);
+  entry_P_ = stepped_on_skin(skin_, entry_P_, path_P.a, most_mm);
   const Vec3 turn = turn_between(Mat3::Identity(), rotation_between(axis_P_, goal_axis_P));
   axis_P_ = (moved(Pose(), Vec3::Zero(), share * turn).R() * axis_P_).normalized();
   const bool is_there = entry_P_ == path_P.a && share >= 1.0;
-  if (is_there) aim_at(path_P);
+  if (is_there) aim_at(path_A);
   if (!is_there) update();
   return is_there;
 }
@@ -119,8 +110,8 @@ void PointerNeedle::put(const Pose& X_PN) {
   constexpr int kSteps = 12;
   for (int step = 0; step < kSteps; ++step) {
     const Vec3 at_P = X_PN.p() - back_mm * axis_P_;
-    const double distance_mm = volume::sample_linear(patient_->skin_distance_mm, at_P);
-    const double steepness = std::max(0.2, axis_P_.dot(skin_inward(*patient_, at_P)));
+    const double distance_mm = skin_.distance_mm(at_P);
+    const double steepness = std::max(0.2, axis_P_.dot(skin_.inward(at_P)));
     back_mm -= distance_mm / steepness;
     back_mm = std::clamp(back_mm, -kFarthest_mm, length_mm_);
   }
@@ -135,7 +126,7 @@ void PointerNeedle::put(const Pose& X_PN) {
 void PointerNeedle::glide(const Vec3& shift_P, const Vec3& seen_along_P) {
   const Vec3 shift = bounded(shift_P);
   if (!is_past_skin()) {
-    entry_P_ = moved_on_skin(*patient_, entry_P_, shift, seen_along_P);
+    entry_P_ = moved_on_skin(skin_, entry_P_, shift, seen_along_P);
     return lean(axis_P_);
   }
   const double outside_mm = std::max(10.0, length_mm_ - past_mm_);
@@ -166,7 +157,7 @@ void PointerNeedle::push(double mm) {
 }
 
 void PointerNeedle::lean(const Vec3& axis_P) {
-  axis_P_ = steep_enough(axis_P, skin_inward(*patient_, entry_P_), kFlattest_rad).normalized();
+  axis_P_ = steep_enough(axis_P, skin_.inward(entry_P_), kFlattest_rad).normalized();
   update();
 }
 
@@ -175,23 +166,33 @@ void PointerNeedle::update() {
   X_PN_ = {X_unrolled.R() * Eigen::AngleAxisd(roll_rad_, Vec3::UnitZ()).toRotationMatrix(), X_unrolled.p()};
 }
 
-PointerProbe::PointerProbe(const anatomy::VirtualPatient& patient, const Pose& X_PT) : patient_(&patient) {
+PointerProbe::PointerProbe(const anatomy::VirtualPatient& patient, const Pose& X_PT)
+    : patient_(&patient), skin_(patient) {
   put(X_PT);
+}
+
+void PointerProbe::set_motion(const motion::PatientMotion& motion) {
+  if (motion.is_same_place(skin_.motion())) return;
+  const Vec3 skin_A = skin_.motion().to_rest(skin_P_), before_P = skin_.inward(skin_P_);
+  skin_ = anatomy::SkinNow(*patient_, motion);
+  skin_P_ = motion.to_now(skin_A);
+  R_PT_ = rotation_between(before_P, skin_.inward(skin_P_)) * R_PT_;
 }
 
 void PointerProbe::put(const Pose& X_PT) {
   if (!X_PT.is_finite()) return;
   R_PT_ = X_PT.R();
-  skin_P_ = nearest_skin_point(*patient_, X_PT.p());
+  skin_P_ = skin_.nearest(X_PT.p());
   pressed_mm_ = std::clamp((X_PT.p() - skin_P_).dot(R_PT_.col(1)), -kFarthest_mm, kDeepest_mm);
 }
 
 bool PointerProbe::approach(const Pose& X_PT, double most_mm, double most_rad) {
-  PointerProbe goal(*patient_, X_PT);
+  PointerProbe goal = *this;
+  goal.put(X_PT);
   const double left_mm = (goal.skin_P_ - skin_P_).norm();
-  const Vec3 before_P = skin_inward(*patient_, skin_P_);
-  skin_P_ = stepped_on_skin(*patient_, skin_P_, goal.skin_P_, most_mm);
-  R_PT_ = rotation_between(before_P, skin_inward(*patient_, skin_P_)) * R_PT_;
+  const Vec3 before_P = skin_.inward(skin_P_);
+  skin_P_ = stepped_on_skin(skin_, skin_P_, goal.skin_P_, most_mm);
+  R_PT_ = rotation_between(before_P, skin_.inward(skin_P_)) * R_PT_;
   const Vec3 turn_P = turn_between(R_PT_, goal.R_PT_);
   const double share = turn_share(left_mm, turn_P.norm(), most_mm, most_rad);
   R_PT_ = moved(Pose(R_PT_, Vec3::Zero()), Vec3::Zero(), share * turn_P).R();
@@ -206,16 +207,16 @@ Pose PointerProbe::X_PT() const noexcept {
 }
 
 void PointerProbe::glide(const Vec3& shift_P, const Vec3& seen_along_P) {
-  const Vec3 before_P = skin_inward(*patient_, skin_P_);
-  skin_P_ = moved_on_skin(*patient_, skin_P_, bounded(shift_P), seen_along_P);
-  R_PT_ = rotation_between(before_P, skin_inward(*patient_, skin_P_)) * R_PT_;
+  const Vec3 before_P = skin_.inward(skin_P_);
+  skin_P_ = moved_on_skin(skin_, skin_P_, bounded(shift_P), seen_along_P);
+  R_PT_ = rotation_between(before_P, skin_.inward(skin_P_)) * R_PT_;
 }
 
 void PointerProbe::tilt(const Vec3& right_P, const Vec3& down_P, double right_rad, double down_rad) {
   if (!std::isfinite(right_rad) || !std::isfinite(down_rad)) return;
   const Vec3 beam_P = R_PT_.col(1);
-  const Vec3 leaned_P = steep_enough(leaned(beam_P, right_P, down_P, right_rad, down_rad),
-                                     skin_inward(*patient_, skin_P_), kFlattest_rad);
+  const Vec3 leaned_P =
+      steep_enough(leaned(beam_P, right_P, down_P, right_rad, down_rad), skin_.inward(skin_P_), kFlattest_rad);
   R_PT_ = rotation_between(beam_P, leaned_P.normalized()) * R_PT_;
 }
 

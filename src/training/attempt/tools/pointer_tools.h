@@ -1,6 +1,6 @@
 #pragma once
 
-#include "anatomy/patient.h"
+#include "anatomy/skin_now.h"
 #include "geometry/pose.h"
 #include "geometry/segment.h"
 
@@ -9,7 +9,7 @@ namespace trocar::attempt {
 /// Hands moved by mouse, wheel and keys: each gesture is a small change of the hand's target pose. Contains no time;
 /// led_pose.h limits the speed. Frame P.
 
-/// The needle's hand. Its state is the entry E, where the needle's axis meets the resting skin, the direction d, and
+/// The needle's hand. Its state is the entry E, where the needle's axis meets the skin, the direction d, and
 /// the distance of the tip past E. Before the skin (not past E) the entry glides over the skin. In the body the needle
 /// only turns about E, because the hole holds it.
 class PointerNeedle {
@@ -19,17 +19,20 @@ class PointerNeedle {
   static constexpr double kFlattest_rad = 1.35;  ///< Largest angle between needle and the skin's inward normal.
 
   /// Starts over the entry of a path, along the path. The patient must outlive it.
-  PointerNeedle(const anatomy::VirtualPatient& patient, const Segment& path_P, double length_mm);
+  PointerNeedle(const anatomy::VirtualPatient& patient, const Segment& path_A, double length_mm);
+
+  /// Where the patient is: the entry, and with it the needle, moves with the skin. Paths are at rest.
+  void set_motion(const motion::PatientMotion& motion);
 
   const Pose& X_PN() const noexcept { return X_PN_; }
   bool is_past_skin() const noexcept { return past_mm_ > 0.0; }
   double past_mm() const noexcept { return past_mm_; }  ///< Distance of the tip past the skin, along the needle.
   const Vec3& entry_P() const noexcept { return entry_P_; }
 
-  void aim_at(const Segment& path_P);
+  void aim_at(const Segment& path_A);
   /// One step towards where aim_at() would put it, over the skin and not through the body: the entry by at most
   /// `most_mm`, the axis by at most `most_rad`. True once there; in the body it stays where it is and returns true.
-  bool approach(const Segment& path_P, double most_mm, double most_rad);
+  bool approach(const Segment& path_A, double most_mm, double most_rad);
   /// Takes over from the needle's pose after another hand moved it.
   void put(const Pose& X_PN);
   /// Shifts the hand (mm): over the skin, or in the body the hub about the entry. `seen_along_P`: unit direction of the
@@ -49,6 +52,7 @@ class PointerNeedle {
   void update();
 
   const anatomy::VirtualPatient* patient_;
+  anatomy::SkinNow skin_;
   double length_mm_;
   Vec3 entry_P_;
   Vec3 axis_P_;  ///< Unit, hub to tip.
@@ -68,6 +72,9 @@ class PointerProbe {
   /// Begins at X_PT; the patient must outlive it.
   PointerProbe(const anatomy::VirtualPatient& patient, const Pose& X_PT);
 
+  /// Where the patient is: the transducer moves with the skin below it.
+  void set_motion(const motion::PatientMotion& motion);
+
   Pose X_PT() const noexcept;
   double pressed_mm() const noexcept { return pressed_mm_; }  ///< Negative: off the skin.
 
@@ -82,14 +89,10 @@ class PointerProbe {
 
  private:
   const anatomy::VirtualPatient* patient_;
+  anatomy::SkinNow skin_;
   Vec3 skin_P_;
   Mat3 R_PT_;
   double pressed_mm_ = 0.0;
 };
-
-/// The point of the resting skin nearest to a point that lies within some cm of it.
-Vec3 nearest_skin_point(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept;
-/// Unit normal of the skin at a point, into the body.
-Vec3 skin_inward(const anatomy::VirtualPatient& patient, const Vec3& p_P) noexcept;
 
 }  // namespace trocar::attempt

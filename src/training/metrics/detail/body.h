@@ -31,7 +31,7 @@ inline double depth_in_body_mm(const anatomy::VirtualPatient& patient, const Vec
 
 /// The label that the tip is in, or presses on if that is bone.
 inline std::uint8_t label_ahead(const anatomy::VirtualPatient& patient, const Moment& moment) noexcept {
-  const Vec3 ahead_P = moment.tip_P + (moment.pressed_mm > 0.0 ? kToBone_mm : 0.0) * moment.axis_P;
+  const Vec3 ahead_P = moment.tip_A() + (moment.pressed_mm > 0.0 ? kToBone_mm : 0.0) * moment.axis_A();
   return volume::sample_nearest<std::uint8_t>(patient.labels, ahead_P, 0);
 }
 

@@ -32,7 +32,7 @@ class Bevel : public Metric {
 
   void step(const Step& step) override {
     const Moment& now = step.now;
-    if (now.events && now.R_PN) bevel_.step(now.time_s, now.tip_P, *now.R_PN, *now.events);
+    if (now.events && now.R_PN) bevel_.step(now.time_s, now.tip_A(), *now.R_PN, *now.events);
   }
   void report(const RunEnd&, std::span<MetricValue> values) const override {
     if (const auto& worst = bevel_.worst()) return values[0].set(worst->to_fibres_deg, worst->time_s);

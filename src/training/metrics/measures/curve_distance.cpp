@@ -44,7 +44,7 @@ class CurveDistance : public Metric {
     }
     if (!was_inside_) begin();
     was_inside_ = true;
-    present_.add(now.tip_P, now.time_s);
+    present_.add(now.tip_A(), now.time_s);
     const bool is_end = end_s_ && now.time_s >= *end_s_;
     if (is_over_ || (!is_end && *now.depth_mm <= deepest_mm_)) return;
     deepest_mm_ = *now.depth_mm;
@@ -61,7 +61,7 @@ class CurveDistance : public Metric {
     std::vector<Vec3> points_P;
     for (const detail::ThinPath::Point& point : way.points())
       if (point.time_s <= end.moment->time_s) points_P.push_back(point.p_P);
-    points_P.push_back(end.moment->tip_P);
+    points_P.push_back(end.moment->tip_A());
     const CurveDistances distances = curve_distances(points_P, paths_[*end.expert].line_P);
     values[0].set(distances.frechet_mm);
     values[1].set(distances.hausdorff_mm);

@@ -52,7 +52,7 @@ class EndPosition : public Metric {
 
   void step(const Step& step) override {
     for (std::size_t n = 0; n < paths_.size(); ++n) {
-      const double apart_mm = (step.now.tip_P - paths_[n].line_P.b).norm();
+      const double apart_mm = (step.now.tip_A() - paths_[n].line_P.b).norm();
       if (nearest_[n].time_s && apart_mm >= nearest_[n].distance_mm) continue;
       nearest_[n] = {apart_mm, step.now.time_s};
     }
@@ -65,13 +65,13 @@ class EndPosition : public Metric {
     }
     const ExpertPath& path = paths_[*end.expert];
     const Moment& last = *end.moment;
-    values[0].set((last.tip_P - path.line_P.b).norm(), last.time_s);
+    values[0].set((last.tip_A() - path.line_P.b).norm(), last.time_s);
     if (end.entry_P)
       values[1].set((*end.entry_P - path.line_P.a).norm());
     else
       values[1].missing = "the needle did not enter the body";
     if (path.line_P.length_mm() > 0.0)
-      values[2].set(angle_between_rad(last.axis_P, path.line_P.b - path.line_P.a) * 180.0 / std::numbers::pi,
+      values[2].set(angle_between_rad(last.axis_A(), path.line_P.b - path.line_P.a) * 180.0 / std::numbers::pi,
                     last.time_s);
     else
       values[2].missing = "the expert path has no length";

@@ -48,7 +48,7 @@ class TargetTest {
     if (has_label_ && is_way_in_target(step)) return true;
     if (has_label_ && !(beyond_mm_ > 0.0)) return false;  // fluid or duct: the tip has to be in it
     for (const ExpertPath& path : paths_)
-      if ((now.tip_P - path.line_P.b).norm() <= task_.target_tolerance_mm) return true;
+      if ((now.tip_A() - path.line_P.b).norm() <= task_.target_tolerance_mm) return true;
     return false;
   }
 
@@ -59,11 +59,11 @@ class TargetTest {
   }
   /// At this moment, or on the straight way since the one before: a slow recording may jump over a small target.
   bool is_way_in_target(const Step& step) const {
-    const Vec3 to_P = step.now.tip_P + beyond_mm_ * step.now.axis_P;
+    const Vec3 to_P = step.now.tip_A() + beyond_mm_ * step.now.axis_A();
     if (is_in_target(to_P)) return true;
     if (step.before == nullptr || !step.before->depth_mm || !(*step.before->depth_mm > 0.0)) return false;
     constexpr double kLongestWay_mm = 50.0;
-    const Vec3 from_P = step.before->tip_P + beyond_mm_ * step.before->axis_P;
+    const Vec3 from_P = step.before->tip_A() + beyond_mm_ * step.before->axis_A();
     const double length_mm = std::min((to_P - from_P).norm(), kLongestWay_mm);
     const int steps = static_cast<int>(length_mm / detail::kTestedEvery_mm) + 1;
     for (int n = 1; n < steps; ++n)

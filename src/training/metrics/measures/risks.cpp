@@ -82,11 +82,11 @@ class Risks : public Metric {
     contacts_.reset();
     const double length_mm = std::min(*step.now.depth_mm, kLongestTested_mm);
     for (double back_mm = 0.0; back_mm < length_mm; back_mm += kShaftStep_mm)
-      test(step.now.tip_P - (step.now.pressed_mm + back_mm) * step.now.axis_P);
+      test(step.now.tip_A() - (step.now.pressed_mm + back_mm) * step.now.axis_A());
     const std::bitset<256> now = contacts_;
-    if (is_checked_ && step.before != nullptr) test_way(tip_P_, step.now.tip_P);
-    tip_P_ = step.now.tip_P;
-    skin_P_ = tip_P_ - length_mm * step.now.axis_P;
+    if (is_checked_ && step.before != nullptr) test_way(tip_P_, step.now.tip_A());
+    tip_P_ = step.now.tip_A();
+    skin_P_ = tip_P_ - length_mm * step.now.axis_A();
     is_checked_ = true;
     mark(step);
     contacts_ = now;  // the tip has left the structures on its way
@@ -118,8 +118,8 @@ class Risks : public Metric {
   }
   bool has_moved(const Moment& now) const noexcept {
     if (!is_checked_) return true;
-    const Vec3 skin_P = now.tip_P - std::min(*now.depth_mm, kLongestTested_mm) * now.axis_P;
-    return (now.tip_P - tip_P_).norm() > kMoved_mm || (skin_P - skin_P_).norm() > kMoved_mm;
+    const Vec3 skin_P = now.tip_A() - std::min(*now.depth_mm, kLongestTested_mm) * now.axis_A();
+    return (now.tip_A() - tip_P_).norm() > kMoved_mm || (skin_P - skin_P_).norm() > kMoved_mm;
   }
   void test(const Vec3& p_P) {
     const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient_.labels, p_P, 0);
@@ -147,10 +147,11 @@ class Risks : public Metric {
   bool is_target_reached(const RunEnd& end) const {
     const Moment& last = *end.moment;
     const bool is_place = labels_.is_parenchymal() || task_.target_P;
-    if (is_place && end.expert) return (last.tip_P - paths_[*end.expert].line_P.b).norm() <= task_.target_tolerance_mm;
+    if (is_place && end.expert)
+      return (last.tip_A() - paths_[*end.expert].line_P.b).norm() <= task_.target_tolerance_mm;
     const bool is_biopsy = needle_ && needle_->is_biopsy;
     const double beyond_mm = is_biopsy ? needle_->notch_middle_mm() : -last.pressed_mm;
-    const Vec3 reach_P = last.tip_P + beyond_mm * last.axis_P;
+    const Vec3 reach_P = last.tip_A() + beyond_mm * last.axis_A();
     return labels_.part(volume::sample_nearest<std::uint8_t>(patient_.labels, reach_P, 0)) ==
            tasks::TaskLabels::Part::kTarget;
   }

@@ -26,12 +26,12 @@ class Structures : public Metric {
     if (!step.is_inside()) return;
     note(*step.now.label);
     if (step.before == nullptr) return;
-    const Vec3 way_P = step.now.tip_P - step.before->tip_P;
+    const Vec3 way_P = step.now.tip_A() - step.before->tip_A();
     const double length_mm = way_P.norm();
     if (length_mm <= detail::kTestedEvery_mm || length_mm > kFarthest_mm) return;
     const int steps = static_cast<int>(length_mm / detail::kTestedEvery_mm) + 1;
     for (int n = 1; n < steps; ++n)
-      note(volume::sample_nearest<std::uint8_t>(patient_.labels, step.before->tip_P + way_P * n / steps, 0));
+      note(volume::sample_nearest<std::uint8_t>(patient_.labels, step.before->tip_A() + way_P * n / steps, 0));
   }
   void report(const RunEnd&, std::span<MetricValue> values) const override {
     values[0].set(static_cast<double>(order_.size()));

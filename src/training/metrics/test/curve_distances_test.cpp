@@ -34,6 +34,7 @@ std::vector<telemetry::TickSample> to_depths(const std::vector<double>& depths_m
     sample.time_s = 0.01 * static_cast<double>(samples.size());
     sample.depth_mm = std::max(0.0, depth_mm);
     sample.tip_mm = Vec3(0.0, depth_mm, 0.0);
+    telemetry::set_at_rest(sample);
     samples.push_back(sample);
   }
   return samples;

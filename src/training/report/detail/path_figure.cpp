@@ -38,7 +38,7 @@ PathDrawing collect(const storage::Session& session) {
   std::optional<std::size_t> deepest;
   for (const Insertion& insertion : find_insertions(session)) {
     std::vector<Vec3> line;
-    for (std::size_t i = insertion.first; i <= insertion.deepest; ++i) line.push_back(session.samples[i].tip_mm);
+    for (std::size_t i = insertion.first; i <= insertion.deepest; ++i) line.push_back(session.samples[i].rest_tip_mm);
     drawing.own_entries_P.push_back(line.front());
     drawing.own_P.push_back(std::move(line));
     if (!deepest || session.samples[insertion.deepest].depth_mm > session.samples[*deepest].depth_mm)
@@ -47,7 +47,8 @@ PathDrawing collect(const storage::Session& session) {
   if (!session.shots.empty() && session.shots.front() < session.samples.size()) deepest = session.shots.front();
   if (deepest) {
     const telemetry::TickSample& sample = session.samples[*deepest];
-    drawing.shaft_P = Segment{sample.tip_mm - (sample.depth_mm + kShaftOutside_mm) * sample.axis, sample.tip_mm};
+    drawing.shaft_P =
+        Segment{sample.rest_tip_mm - (sample.depth_mm + kShaftOutside_mm) * sample.rest_axis, sample.rest_tip_mm};
   }
   if (drawing.planned_P)
     drawing.through_P = plan.b;

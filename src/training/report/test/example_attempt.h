@@ -55,6 +55,7 @@ inline storage::Session example_attempt() {
     const double way_mm = 10.0 * std::min(s.time_s, 5.0) - 10.0;  // 1 s to the skin, 4 s in, 3 s at rest
     s.tip_mm = {0.0, -40.0 + way_mm, 0.0};
     s.axis = Vec3::UnitY();
+    telemetry::set_at_rest(s);
     s.depth_mm = std::max(0.0, way_mm);
     s.phase = way_mm <= 0.0 ? telemetry::InsertionPhase::kOutside : telemetry::InsertionPhase::kInserted;
     s.axial_velocity_mm_s = s.time_s < 5.0 ? 10.0 : 0.0;

@@ -249,7 +249,7 @@ TEST(HtmlReport, OmitsNonFiniteNumbersFromPlots) {
   for (std::size_t i = 0; i < session.samples.size(); i += 3) {
     session.samples[i].f_friction_n = std::numeric_limits<double>::quiet_NaN();
     session.samples[i].device_f_n.x() = std::numeric_limits<double>::infinity();
-    session.samples[i].tip_mm.x() = std::numeric_limits<double>::quiet_NaN();
+    session.samples[i].tip_mm.x() = session.samples[i].rest_tip_mm.x() = std::numeric_limits<double>::quiet_NaN();
   }
   session.outcome->score = std::numeric_limits<double>::quiet_NaN();
   session.outcome->parts[0].points = std::numeric_limits<double>::quiet_NaN();

@@ -15,7 +15,7 @@ double force_n(const telemetry::TickSample& sample) {
 
 void append(Trace& trace, const telemetry::TickSample& sample, double extreme_n) {
   trace.time_s.push_back(sample.time_s);
-  for (int axis = 0; axis < 3; ++axis) trace.tip_mm[static_cast<std::size_t>(axis)].push_back(sample.tip_mm[axis]);
+  for (int axis = 0; axis < 3; ++axis) trace.tip_mm[static_cast<std::size_t>(axis)].push_back(sample.rest_tip_mm[axis]);
   trace.depth_mm.push_back(sample.depth_mm);
   trace.force_n.push_back(extreme_n);
   trace.tissue.push_back(sample.tissue);

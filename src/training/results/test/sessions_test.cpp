@@ -41,6 +41,7 @@ class Sessions : public ResultsTest {
       telemetry::TickSample sample;
       sample.time_s = 0.001 * n;
       sample.tip_mm = Vec3(0.0, 0.01 * n, 0.0);
+      telemetry::set_at_rest(sample);
       sample.depth_mm = 0.01 * n;
       sample.tissue = 1;
       sample.f_prepuncture_n = n == 500 ? -3.25 : -0.5;

@@ -42,18 +42,18 @@ std::size_t count_passes(const AttemptData& attempt, const tasks::TaskLabels& la
   Vec3 last_inside_P = Vec3::Zero();
   double shallowest_mm = -kAdvance_mm;  // since it left the organ
   for (const telemetry::TickSample& sample : attempt.samples) {
-    if (!sample.tip_mm.allFinite() || !(sample.depth_mm > 0.0)) {
+    if (!sample.rest_tip_mm.allFinite() || !(sample.depth_mm > 0.0)) {
       is_inside = false;
       shallowest_mm = -kAdvance_mm;
       continue;
     }
-    const auto id = volume::sample_nearest<std::uint8_t>(attempt.patient.labels, sample.tip_mm, 0);
+    const auto id = volume::sample_nearest<std::uint8_t>(attempt.patient.labels, sample.rest_tip_mm, 0);
     const auto part = labels.part(id);
     if (part == tasks::TaskLabels::Part::kOrgan || part == tasks::TaskLabels::Part::kTarget) {
       if (!is_inside && sample.depth_mm > shallowest_mm + kAdvance_mm) ++passes;
       is_inside = true;
-      last_inside_P = sample.tip_mm;
-    } else if (is_inside && outside[id] && (sample.tip_mm - last_inside_P).norm() > kBack_mm) {
+      last_inside_P = sample.rest_tip_mm;
+    } else if (is_inside && outside[id] && (sample.rest_tip_mm - last_inside_P).norm() > kBack_mm) {
       is_inside = false;
       shallowest_mm = sample.depth_mm;
     }

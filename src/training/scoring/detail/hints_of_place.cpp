@@ -151,8 +151,8 @@ bool has_pressed_only(const HintSubject& subject, double time_s) {
   const AttemptData& attempt = subject.judged.attempt;
   const auto sample = std::find_if(attempt.samples.begin(), attempt.samples.end(),
                                    [&](const telemetry::TickSample& one) { return one.time_s >= time_s; });
-  if (sample == attempt.samples.end() || telemetry::pierced_tip_mm(*sample) == sample->tip_mm) return false;
-  const anatomy::Label* const label = anatomy::find_label(attempt.patient, sample->tip_mm);
+  if (sample == attempt.samples.end() || telemetry::pierced_rest_tip_mm(*sample) == sample->rest_tip_mm) return false;
+  const anatomy::Label* const label = anatomy::find_label(attempt.patient, sample->rest_tip_mm);
   return label != nullptr && tasks::is_target(attempt.task, *label);
 }
 

@@ -151,8 +151,8 @@ std::vector<BiopsyCore> take_cores(const AttemptData& attempt) {
   std::vector<BiopsyCore> cores;
   for (const std::size_t shot : attempt.shots) {
     const telemetry::TickSample& sample = attempt.samples[shot];
-    if (!telemetry::is_in_body(sample) || !sample.tip_mm.allFinite() || !sample.axis.allFinite()) continue;
-    cores.push_back(take_core(attempt.task, attempt.patient, attempt.needle, sample.tip_mm, sample.axis));
+    if (!telemetry::is_in_body(sample) || !sample.rest_tip_mm.allFinite() || !sample.rest_axis.allFinite()) continue;
+    cores.push_back(take_core(attempt.task, attempt.patient, attempt.needle, sample.rest_tip_mm, sample.rest_axis));
     cores.back().time_s = sample.time_s;
   }
   return cores;

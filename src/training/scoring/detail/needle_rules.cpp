@@ -37,11 +37,11 @@ std::optional<double> entered_too_high_s(const AttemptData& attempt) {
   if (!highest_mm) return std::nullopt;
   bool was_in_target = false;
   for (const telemetry::TickSample& sample : attempt.samples) {
-    if (!sample.tip_mm.allFinite() || !std::isfinite(sample.depth_mm) || !std::isfinite(sample.time_s)) continue;
+    if (!sample.rest_tip_mm.allFinite() || !std::isfinite(sample.depth_mm) || !std::isfinite(sample.time_s)) continue;
     const anatomy::Label* const label =
-        sample.depth_mm > 0.0 ? anatomy::find_label(attempt.patient, sample.tip_mm) : nullptr;
+        sample.depth_mm > 0.0 ? anatomy::find_label(attempt.patient, sample.rest_tip_mm) : nullptr;
     const bool is_in_target = label != nullptr && tasks::is_target(attempt.task, *label);
-    if (is_in_target && !was_in_target && sample.tip_mm.z() > *highest_mm) return sample.time_s;
+    if (is_in_target && !was_in_target && sample.rest_tip_mm.z() > *highest_mm) return sample.time_s;
     was_in_target = is_in_target;
   }
   return std::nullopt;
@@ -51,8 +51,8 @@ std::optional<metrics::WorstBevel::Puncture> judge_bevel(const AttemptData& atte
   if (!attempt.task.bevel) return std::nullopt;
   metrics::WorstBevel bevel(attempt.task, attempt.patient, attempt.tissues.find_layer(attempt.task.bevel->layer));
   for (const telemetry::TickSample& sample : attempt.samples)
-    if (sample.tip_mm.allFinite() && sample.axis.allFinite())
-      bevel.step(sample.time_s, sample.tip_mm, telemetry::felt_needle(sample).R(), sample.events);
+    if (sample.rest_tip_mm.allFinite() && sample.rest_axis.allFinite())
+      bevel.step(sample.time_s, sample.rest_tip_mm, telemetry::felt_needle(sample).R(), sample.events);
   return bevel.worst();
 }
 

@@ -27,6 +27,7 @@ class Phases : public ::testing::Test {
     moment.needle.time_s = time_s;
     moment.needle.tip_mm = tip_P;
     moment.needle.axis = axis_P.normalized();
+    telemetry::set_at_rest(moment.needle);
     moment.needle.depth_mm = std::max(0.0, tip_P.y());
     moment.X_PT = X_PT_;
     moment.contact_n = contact_n_;

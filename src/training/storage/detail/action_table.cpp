@@ -23,7 +23,7 @@ const TimedTable& action_table() {
 }
 
 void add(TimedBuffer& buffer, const tasks::Action& action) {
-  const Vec3& p = action.tip_P;
+  const Vec3& p = action.tip_A;
   buffer.add(std::array{action.time_s, static_cast<double>(action.kind), action.amount,
                         static_cast<double>(action.result.substance), action.result.share, p.x(), p.y(), p.z(),
                         action.depth_mm});

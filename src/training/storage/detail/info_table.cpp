@@ -45,6 +45,7 @@ void visit_info(Info& info, Visitor&& visit) {
 template <class Info, class Visitor>
 void visit_added_info(Info& info, Visitor&& visit) {
   visit("task_toml", info.task_toml);
+  visit("motion_hash", info.motion_hash);
   visit("device_preset", info.device_preset);
   visit("level", info.level);
   visit("attempt_id", info.attempt_id);

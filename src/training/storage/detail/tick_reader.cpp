@@ -152,6 +152,8 @@ std::vector<telemetry::TickSample> TickReader::read(const TickBlock& block) {
     columns.resize(kTicksAFetch);
   }
   if (samples.size() != block.ticks) throw soci::soci_error("ticks are missing");
+  if (!present_.contains("rest_tip_x_mm"))  // an older program: its patients did not move
+    for (telemetry::TickSample& sample : samples) telemetry::set_at_rest(sample);
   read_events(*database_, block, samples);
   if (!block.digest.empty() && digest_of(samples, &present_) != block.digest)
     throw soci::soci_error("the checksum is another");

@@ -59,6 +59,7 @@ inline telemetry::TickSample example_sample(std::size_t n) {
   });
   s.time_s = 0.001 * static_cast<double>(n);
   s.axis.normalize();
+  s.rest_axis.normalize();
   s.tissue = static_cast<std::uint8_t>(n % 5);
   if (n % 50 == 3) s.events[0] = {telemetry::EventKind::kPuncture, 2};
   if (n % 100 == 3) s.events[1] = {telemetry::EventKind::kEnter, 7};

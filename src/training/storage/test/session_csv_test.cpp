@@ -24,7 +24,8 @@ constexpr const char* kHeader =
     "f_weight_x_n,f_weight_y_n,f_weight_z_n,f_total_x_n,f_total_y_n,f_total_z_n,tau_x_nmm,tau_y_nmm,tau_z_nmm,event,"
     "limited,breathing,f_tip_proxy_x_n,f_tip_proxy_y_n,f_tip_proxy_z_n,f_body_axial_n,f_stick_n,device_x_mm,"
     "device_y_mm,device_z_mm,device_f_x_n,device_f_y_n,device_f_z_n,device_tau_x_nmm,device_tau_y_nmm,device_tau_z_nmm,"
-    "gate_mode,gate_fault,gate_scale,coupling_share";
+    "gate_mode,gate_fault,gate_scale,coupling_share,rest_tip_x_mm,rest_tip_y_mm,rest_tip_z_mm,rest_axis_x,rest_axis_y,"
+    "rest_axis_z";
 
 Session example_session(std::size_t ticks) {
   Session session;

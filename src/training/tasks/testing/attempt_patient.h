@@ -89,6 +89,7 @@ inline Attempt make_attempt(const Segment& line_P, double dent_mm = 0.6) {
     sample.time_s = 0.001 * static_cast<double>(attempt.samples.size());
     sample.tip_mm = line_P.a + along_mm * line_P.direction();
     sample.axis = line_P.direction();
+    telemetry::set_at_rest(sample);
     sample.depth_mm = std::max(0.0, along_mm);
     if (!is_inside && along_mm >= dent_mm) {
       is_inside = true;

@@ -63,6 +63,7 @@ class LayeredBody {
     sample.time_s = time_s;
     sample.tip_mm = X_PN_.p() + (needle_mm_ - device_mm) * axis_P;
     sample.axis = X_PN_.R().col(2);
+    telemetry::set_at_rest(sample);
     sample.depth_mm = std::max(0.0, punctured > 0 ? needle_mm_ : 0.0);
     sample.phase =
         needle_mm_ < 0.0 && punctured == 0 ? telemetry::InsertionPhase::kOutside : telemetry::InsertionPhase::kInserted;

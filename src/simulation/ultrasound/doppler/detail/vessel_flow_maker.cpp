@@ -235,7 +235,7 @@ void VesselFlowMaker::fill(const Lumen& lumen, std::size_t first_branch) {
       const Owner& owner = find_owner(owners, p_P);
       const Vec3 velocity_P = velocity_at(owner, p_P, static_cast<double>(lumen.joined.voxels[n]));
       for (std::size_t a = 0; a < 3; ++a)
-        cells[m].velocity_P[a] = static_cast<std::int16_t>(
+        cells[m].velocity_A[a] = static_cast<std::int16_t>(
             std::lround(velocity_P[static_cast<Eigen::Index>(a)] / static_cast<double>(kSpeedStep_mm_per_s)));
       const float share = std::min(0.5F + 0.5F * lumen.own.voxels[n] / edge_mm, 1.0F);
       cells[m].share = static_cast<std::uint8_t>(std::lround(255.0F * share));

@@ -39,8 +39,8 @@ TEST(FlowOnDemand, IsComputedWhenItIsFirstUsed) {
   EXPECT_EQ(flow.poll(), first) << "once";
   const auto direct = make_vessel_flow(*patient, make_steady_table(60.0, 2.0));
   ASSERT_TRUE(direct);
-  EXPECT_EQ(first->velocity_P(Vec3::Zero(), 0.0), (*direct)->velocity_P(Vec3::Zero(), 0.0));
-  EXPECT_GT(first->velocity_P(Vec3::Zero(), 0.0).norm(), 500.0);
+  EXPECT_EQ(first->velocity_A(Vec3::Zero(), 0.0, 0.0), (*direct)->velocity_A(Vec3::Zero(), 0.0, 0.0));
+  EXPECT_GT(first->velocity_A(Vec3::Zero(), 0.0, 0.0).norm(), 500.0);
 }
 
 TEST(FlowOnDemand, IsUnavailableWithoutATableRow) {

@@ -50,7 +50,7 @@ const VesselFlow& abdomen_flow() {
 Vec3 peak_flow(const Vec3& p_P) {
   Vec3 fastest = Vec3::Zero();
   for (double time_s = 0.0; time_s < 0.86; time_s += 0.02) {
-    const Vec3 velocity = abdomen_flow().velocity_P(p_P, time_s);
+    const Vec3 velocity = abdomen_flow().velocity_A(p_P, time_s, 0.0);
     if (velocity.norm() > fastest.norm()) fastest = velocity;
   }
   return fastest;
@@ -83,15 +83,15 @@ TEST(VesselFlow, HasAParabolaAcrossTheLumen) {
   for (const double angle : {-0.8, 0.0, 0.7}) {
     const Vec3 outwards(0.0, -std::cos(angle), std::sin(angle));
     for (const double rho : {0.0, 0.5, 0.8}) {
-      const double speed = flow->velocity_P((kArc_mm + rho * kTube_mm) * outwards, 0.0).norm();
+      const double speed = flow->velocity_A((kArc_mm + rho * kTube_mm) * outwards, 0.0, 0.0).norm();
       // A voxel of 0.8 mm is a seventh of the radius.
       EXPECT_NEAR(speed, 500.0 * (1.0 - rho * rho), 60.0) << angle << " " << rho;
     }
-    EXPECT_EQ(flow->velocity_P((kArc_mm + kTube_mm + 2.0) * outwards, 0.0), Vec3::Zero());
+    EXPECT_EQ(flow->velocity_A((kArc_mm + kTube_mm + 2.0) * outwards, 0.0, 0.0), Vec3::Zero());
   }
-  EXPECT_EQ(flow->velocity_P(Vec3(0, 0, 0), 0.0), Vec3::Zero());
-  EXPECT_EQ(flow->velocity_P(Vec3(1e9, 0, 0), 0.0), Vec3::Zero());
-  EXPECT_EQ(flow->velocity_P(Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0), 0.0), Vec3::Zero());
+  EXPECT_EQ(flow->velocity_A(Vec3(0, 0, 0), 0.0, 0.0), Vec3::Zero());
+  EXPECT_EQ(flow->velocity_A(Vec3(1e9, 0, 0), 0.0, 0.0), Vec3::Zero());
+  EXPECT_EQ(flow->velocity_A(Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0), 0.0, 0.0), Vec3::Zero());
 }
 
 TEST(VesselFlow, JoinsTwoSourcesIntoOneSink) {
@@ -110,9 +110,9 @@ TEST(VesselFlow, JoinsTwoSourcesIntoOneSink) {
                          {"liver", [&](const Vec3& p) { return (p - Vec3(-48, 0, 28)).norm() < 12.0; }}});
   const auto flow = make_vessel_flow(patient, shipped_table());
   ASSERT_TRUE(flow.has_value()) << flow.error().text();
-  EXPECT_LT((*flow)->velocity_P(0.5 * left, 0.0).x(), -50.0);
-  EXPECT_GT((*flow)->velocity_P(0.5 * below, 0.0).z(), 50.0);
-  EXPECT_LT((*flow)->velocity_P(0.5 * liver, 0.0).x(), -50.0);
+  EXPECT_LT((*flow)->velocity_A(0.5 * left, 0.0, 0.0).x(), -50.0);
+  EXPECT_GT((*flow)->velocity_A(0.5 * below, 0.0, 0.0).z(), 50.0);
+  EXPECT_LT((*flow)->velocity_A(0.5 * liver, 0.0, 0.0).x(), -50.0);
 }
 
 TEST(VesselFlow, FlowsFromTheWideEnd) {
@@ -128,8 +128,8 @@ TEST(VesselFlow, FlowsFromTheWideEnd) {
   const auto flow = make_vessel_flow(patient, shipped_table());
   ASSERT_TRUE(flow.has_value()) << flow.error().text();
   const double systole_s = 0.17;
-  EXPECT_LT((*flow)->velocity_P(Vec3(0, 0, 10), systole_s).z(), -500.0);
-  EXPECT_GT((*flow)->velocity_P(Vec3(45, 0, 20), systole_s).z(), 500.0);
+  EXPECT_LT((*flow)->velocity_A(Vec3(0, 0, 10), systole_s, 0.0).z(), -500.0);
+  EXPECT_GT((*flow)->velocity_A(Vec3(45, 0, 20), systole_s, 0.0).z(), 500.0);
 }
 
 TEST(VesselFlow, HasCorrectDirectionsInTheEmbeddedPatient) {
@@ -163,7 +163,7 @@ TEST(VesselFlow, PulsesInArteriesAndIsSteadyInPortalVein) {
     EXPECT_NE(rule, nullptr) << label;
     double low = 1e9, high = -1e9;
     for (double time_s = 0.0; time_s < 20.0; time_s += 0.01) {
-      const double value = table.waveforms[rule->waveform].at(time_s, table.heart_per_min, table.breaths_per_min);
+      const double value = table.waveforms[rule->waveform].at(time_s, table.heart_per_min, 0.0);
       low = std::min(low, value);
       high = std::max(high, value);
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/pose.h"
+#include "motion/patient_motion.h"
 #include "ultrasound/engine/detail/scan_plan.h"
 #include "ultrasound/engine/detail/scatterer_gain.h"
 #include "ultrasound/engine/detail/tiled_tissue.h"
@@ -93,6 +94,7 @@ struct FrameState {
   TiledTissue tiles;
   std::vector<PointGroup> point_groups;
   Pose X_PT;
+  motion::PatientMotion motion;
   std::array<std::array<float, 3>, 3> index_of_T{};  ///< Columns: voxel index per mm of x, y, z of T.
   std::array<float, 3> index_of_origin{};
   std::array<float, 3> elevation{};  ///< Index per mm.

@@ -54,7 +54,7 @@ namespace {
 
 void add_point(const ScanPlan& plan, FrameState& frame, const AcousticPoint& point, const Pose& X_TP, int first,
                int last) noexcept {
-  const ImagedPoint imaged = image_point(plan, frame, X_TP * point.p_P);
+  const ImagedPoint imaged = image_point(plan, frame, X_TP * frame.motion.to_now(point.p_P));
   if (imaged.line < -1.0 || std::abs(imaged.zeta) > static_cast<double>(kBeamEdge)) return;
   const auto line = static_cast<int>(std::floor(imaged.line));
   const auto nearest = std::clamp(static_cast<int>(std::lround(imaged.line)), 0, plan.lines - 1);
@@ -78,17 +78,21 @@ void add_point(const ScanPlan& plan, FrameState& frame, const AcousticPoint& poi
 
 }  // namespace
 
+/// Motion moves the points of a group apart by no more than this. [assumed]
+constexpr double kMostSpread_mm = 60.0;
+
 void add_points(const ScanPlan& plan, FrameState& frame, int first, int last) noexcept {
   const Pose X_TP = frame.X_PT.inverse();
   const double thickest_mm = static_cast<double>(
       kBeamEdge * *std::max_element(plan.elevation_sigma_mm.begin(), plan.elevation_sigma_mm.end()));
   const double deepest_mm = plan.geometry.depth_mm;
   for (const PointGroup& group : frame.point_groups) {
-    const Vec3 centre_T = X_TP * group.centre_P;
-    if (std::abs(centre_T.z()) > thickest_mm + group.radius_mm || centre_T.y() > deepest_mm + group.radius_mm) continue;
+    const Vec3 centre_T = X_TP * frame.motion.to_now(group.centre_P);
+    const double radius_mm = group.radius_mm + (frame.motion.is_rest() ? 0.0 : kMostSpread_mm);
+    if (std::abs(centre_T.z()) > thickest_mm + radius_mm || centre_T.y() > deepest_mm + radius_mm) continue;
     for (std::size_t n = group.first; n < group.last; ++n) {
       const AcousticPoint& point = frame.scene->points[n];
-      if (std::abs(X_TP.R().row(2).dot(point.p_P) + X_TP.p().z()) > thickest_mm) continue;
+      if (std::abs(X_TP.R().row(2).dot(frame.motion.to_now(point.p_P)) + X_TP.p().z()) > thickest_mm) continue;
       add_point(plan, frame, point, X_TP, first, last);
     }
   }

@@ -75,8 +75,25 @@ Cell make_cell(const ScanPlan& plan, const FrameState& frame, int first, int las
   return cell;
 }
 
-CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept {
+namespace {
+
+CellBox bricks_of(const ScanPlan& plan, const FrameState& frame, const Eigen::AlignedBox3d& bounds) noexcept {
+  const double reach_mm = frame.drag.reach_mm > 0.0F ? static_cast<double>(frame.drag.shift_T.norm()) : 0.0;
+  const auto brick_of = [&](double mm) {
+    return static_cast<std::int32_t>(std::floor(mm / static_cast<double>(plan.brick_mm)));
+  };
   CellBox box{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    box.low[a] = brick_of(bounds.min()[axis] - reach_mm);
+    box.high[a] = brick_of(bounds.max()[axis] + reach_mm);
+  }
+  return box;
+}
+
+}  // namespace
+
+CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept {
   Eigen::AlignedBox3d bounds_P;
   for (const double line : {cell.low_line, 0.5 * (cell.low_line + cell.high_line), cell.high_line}) {
     for (const float rest : {cell.near_rest, cell.far_rest}) {
@@ -86,16 +103,39 @@ CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) 
       }
     }
   }
-  const double reach_mm = frame.drag.reach_mm > 0.0F ? static_cast<double>(frame.drag.shift_T.norm()) : 0.0;
-  const auto brick_of = [&](double mm) {
-    return static_cast<std::int32_t>(std::floor(mm / static_cast<double>(plan.brick_mm)));
+  return bricks_of(plan, frame, bounds_P);
+}
+
+CellAtRest rest_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept {
+  constexpr int kPlaces = 5, kAcross = 3;
+  const auto place_P = [&](int line, int depth, int across) -> Vec3 {
+    const double share = static_cast<double>(line) / (kPlaces - 1);
+    const double rest = std::lerp(static_cast<double>(cell.near_rest), static_cast<double>(cell.far_rest),
+                                  static_cast<double>(depth) / (kPlaces - 1));
+    const Vec2 p = plan.geometry.to_cartesian(
+        {std::lerp(cell.low_line, cell.high_line, share), (rest + 0.5) * plan.geometry.sample_mm()});
+    return frame.X_PT * Vec3(p.x(), p.y(), static_cast<double>(cell.half_thickness_mm) * (across - 1));
   };
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto axis = static_cast<Eigen::Index>(a);
-    box.low[a] = brick_of(bounds_P.min()[axis] - reach_mm);
-    box.high[a] = brick_of(bounds_P.max()[axis] + reach_mm);
+  CellAtRest at_rest;
+  at_rest.middle_P = place_P(kPlaces / 2, kPlaces / 2, kAcross / 2);
+  at_rest.middle_A = frame.motion.to_rest(at_rest.middle_P);
+  at_rest.jacobian = frame.motion.jacobian(at_rest.middle_A);
+  Eigen::AlignedBox3d bounds_A;
+  for (int line = 0; line < kPlaces; ++line) {
+    for (int depth = 0; depth < kPlaces; ++depth) {
+      for (int across = 0; across < kAcross; ++across) {
+        const Vec3 p_P = place_P(line, depth, across), p_A = frame.motion.to_rest(p_P);
+        bounds_A.extend(p_A);
+        at_rest.slack_mm = std::max(at_rest.slack_mm, (at_rest.now_P(p_A) - p_P).norm());
+      }
+    }
   }
-  return box;
+  at_rest.box = bricks_of(plan, frame, bounds_A);
+  for (std::size_t a = 0; a < 3; ++a) {  // between the places
+    --at_rest.box.low[a];
+    ++at_rest.box.high[a];
+  }
+  return at_rest;
 }
 
 namespace {

@@ -37,6 +37,18 @@ struct CellBox {
 };
 CellBox box_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept;
 
+/// Where the patient moves: the tissue of a cell at rest, by its middle and the map's slope there, and how far tissue
+/// of the cell is from that.
+struct CellAtRest {
+  CellBox box;
+  Vec3 middle_A, middle_P;
+  Mat3 jacobian;
+  double slack_mm = 0.0;
+
+  Vec3 now_P(const Vec3& p_A) const noexcept { return middle_P + jacobian * (p_A - middle_A); }
+};
+CellAtRest rest_of(const ScanPlan& plan, const FrameState& frame, const Cell& cell) noexcept;
+
 /// How far the tissue of a brick reaches from its middle, mm: across the image, and across the cell's sides.
 struct BrickReach {
   float across_mm;

@@ -324,6 +324,38 @@ void add_field(const ScanPlan& plan, const ScattererField& field, FrameState& fr
   }
 }
 
+/// Where the patient moves: the bricks of tissue that is in a cell now, each where its middle is, with the slope of the
+/// map there. `take(placed, middle_T)`.
+template <class Take>
+void take_moving(const ScanPlan& plan, const FrameState& frame, const Cell& cell, const Pose& X_TP,
+                 const std::vector<Brick>& library, const Take& take) noexcept {
+  const auto brick_mm = static_cast<double>(plan.brick_mm);
+  const CellAtRest at_rest = rest_of(plan, frame, cell);
+  const Mat3 side_T = X_TP.R() * at_rest.jacobian * brick_mm;
+  const double drag_mm = frame.drag.reach_mm > 0.0F ? static_cast<double>(frame.drag.shift_T.norm()) : 0.0;
+  const BrickReach reach =
+      reach_of(cell, side_T.cast<float>(), static_cast<float>(drag_mm + at_rest.slack_mm + 0.2 * brick_mm));
+  const CellBox& box = at_rest.box;
+  BrickIndex b{};
+  for (b[2] = box.low[2]; b[2] <= box.high[2]; ++b[2]) {
+    for (b[1] = box.low[1]; b[1] <= box.high[1]; ++b[1]) {
+      const Vec3 row_A = (Vec3(box.low[0], b[1], b[2]) + Vec3::Constant(0.5)) * brick_mm;
+      int first_i = 0, last_i = box.high[0] - box.low[0];
+      stay_in_cell(plan, cell, reach, (X_TP * at_rest.now_P(row_A)).cast<float>(), side_T.col(0).cast<float>(), first_i,
+                   last_i);
+      for (int i = first_i; i <= last_i; ++i) {
+        const motion::PatientMotion::Moved moved =
+            frame.motion.moved_with_jacobian(row_A + i * brick_mm * Vec3::UnitX());
+        const Vec3f middle_T = (X_TP * moved.p_P).cast<float>();
+        if (!is_at_depth(cell, plan.geometry.is_fan, static_cast<float>(plan.geometry.radius_mm), middle_T)) continue;
+        b[0] = box.low[0] + i;
+        const Eigen::Matrix3f sides = (X_TP.R() * moved.jacobian * brick_mm).cast<float>();
+        take(place_brick(b, library, middle_T, sides), middle_T);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 ScattererField make_scatterer_field(const ScanPlan& plan) {
@@ -349,6 +381,16 @@ void add_scatterers(const ScanPlan& plan, const std::vector<Brick>& library, Fra
       static_cast<float>(*std::max_element(frame.audible.begin() + first, frame.audible.begin() + last));
   for (float rest = -frame.deepest_dent_mm / plan.sample_mm - radius; rest < audible + radius; rest += segment) {
     const Cell cell = make_cell(plan, frame, first, last, rest, rest + segment, radius);
+    if (!frame.motion.is_rest()) {
+      take_moving(plan, frame, cell, X_TP, library, [&](const PlacedBrick& placed, const Vec3f& middle_T) {
+        const bool is_dragged =
+            has_drag && (middle_T - frame.drag.tip_T).norm() < frame.drag.reach_mm + radius_mm + drag_mm;
+        take(plan, is_dragged ? &frame.drag : nullptr, cell, placed, near);
+        if (near.count > Candidates::kMost - kBrickScatterers) flush(plan, frame, cell, near, echoes, field.data());
+      });
+      flush(plan, frame, cell, near, echoes, field.data());
+      continue;
+    }
     const CellBox box = box_of(plan, frame, cell);
     const BrickReach reach = reach_of(cell, side_T, drag_mm);
     BrickIndex b{};

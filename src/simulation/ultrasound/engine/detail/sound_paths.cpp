@@ -91,7 +91,7 @@ void note_gas(const ScanPlan& plan, FrameState& frame, const WalkResult& walk, i
 
 void fit_dent(const AcousticScene& scene, const ScanPlan& plan, FrameState& frame) noexcept {
   const double sample_mm = plan.geometry.sample_mm();
-  const double reach_mm = find_dent_reach_mm(scene, plan.geometry, frame.X_PT);
+  const double reach_mm = find_dent_reach_mm(scene, plan.geometry, frame.X_PT, frame.motion);
   frame.dent_reach = static_cast<float>(reach_mm / sample_mm);
   for (std::size_t s = 0; s < static_cast<std::size_t>(plan.samples); ++s)
     frame.contact_shape[s] = static_cast<float>(dent_share((static_cast<double>(s) + 0.5) * sample_mm, reach_mm));

@@ -19,7 +19,9 @@ struct alignas(64) WalkResult {
   std::array<std::array<float, kMaxSamples + 16>, 3> index;  ///< Position of each sample, fractional voxels.
   /// Offset of the first voxel of its cell among the tiles; -1 outside the volume.
   std::array<std::int32_t, kMaxSamples + 16> cell;
-  std::array<float, kMaxSamples + 16> log_gain;       ///< Gain of a scatterer there: loss and backscatter, neper.
+  std::array<float, kMaxSamples + 16> log_gain;  ///< Gain of a scatterer there: loss and backscatter, neper.
+  /// Where the patient moves: from a sample's place now to its tissue at rest, index.
+  alignas(64) std::array<std::array<float, kMaxSamples + 16>, 3> to_rest;
   std::array<float, kMaxSamples + 16> path_loss;      ///< Loss alone, neper.
   std::array<float, kMaxSamples + 16> sideways_mm;    ///< Displacement by refraction.
   std::array<std::uint8_t, kMaxSamples + 16> share;   ///< Class of the share of scatterers.

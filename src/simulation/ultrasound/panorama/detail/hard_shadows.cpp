@@ -44,7 +44,7 @@ void find_hard_shadows(const AcousticScene& scene, const ScanPlan& plan, FrameSt
                        std::vector<float>& aperture_rows) noexcept {
   const auto first = static_cast<std::size_t>(probed.first), count = static_cast<std::size_t>(probed.count());
   find_contact(scene.skin_distance_mm, plan.geometry, frame.X_PT, std::span(frame.contact).subspan(first, count),
-               probed.first);
+               probed.first, frame.motion);
   fit_dent(scene, plan, frame);
   aim_lines(plan, frame, probed.first, probed.last);
   for_groups(probed, [&](int group, int begin, int end) {

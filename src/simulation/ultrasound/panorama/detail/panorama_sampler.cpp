@@ -12,6 +12,8 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "ultrasound/engine/detail/rest_shift.h"
+
 #ifndef TROCAR_ULTRASOUND_PANORAMA_TYPES
 #define TROCAR_ULTRASOUND_PANORAMA_TYPES
 namespace trocar::ultrasound::detail {
@@ -19,7 +21,8 @@ namespace trocar::ultrasound::detail {
 /// A plane of a scanline in voxel indices: origin + along * rest_mm + across * sigma_mm.
 struct PlaneLine {
   std::array<float, 3> origin{}, along{}, across{};
-  std::array<float, 3> last{};  ///< Largest index.
+  std::array<float, 3> last{};            ///< Largest index.
+  std::array<const float*, 3> to_rest{};  ///< Added to the index of each sample; nullptr: the patient does not move.
   std::int32_t row = 0, slab = 0;
   float share = 1.0F;
   float log_floor = 0.0F, log_step = 0.0F;  ///< Logarithm of the power of level 0, and of a level.
@@ -51,8 +54,9 @@ HWY_INLINE VF between_bytes(VI word, VF part) {
   return hn::MulAdd(hn::Sub(second, first), part, first);
 }
 
-/// Trilinear values of a byte volume; the place is clamped to it. `is_inside` becomes false outside.
-HWY_INLINE VF trilinear(const PlaneLine& plane, const std::uint8_t* voxels, VF rest_mm, VF sigma_mm,
+/// Trilinear values of a byte volume at samples `at` of a scanline; the place is clamped to the volume. `is_inside`
+/// becomes false outside.
+HWY_INLINE VF trilinear(const PlaneLine& plane, const std::uint8_t* voxels, VF rest_mm, VF sigma_mm, VI sample,
                         hn::Mask<F>& is_inside) {
   const F f;
   const I d;
@@ -62,6 +66,7 @@ HWY_INLINE VF trilinear(const PlaneLine& plane, const std::uint8_t* voxels, VF r
   for (std::size_t a = 0; a < 3; ++a) {
     VF index = hn::MulAdd(rest_mm, hn::Set(f, plane.along[a]), hn::Set(f, plane.origin[a]));
     index = hn::MulAdd(sigma_mm, hn::Set(f, plane.across[a]), index);
+    if (plane.to_rest[a] != nullptr) index = hn::Add(index, hn::GatherIndex(f, plane.to_rest[a], sample));
     const VF last = hn::Set(f, plane.last[a]);
     is_inside = hn::And(is_inside, hn::And(hn::Ge(index, hn::Zero(f)), hn::Le(index, last)));
     const VF held = hn::Min(hn::Max(index, hn::Zero(f)), hn::Sub(last, hn::Set(f, 1e-3F)));
@@ -90,7 +95,7 @@ WeightRange sample_weights(const PlaneLine& plane, const std::uint8_t* weights, 
     const VI at = hn::Min(hn::Mul(hn::Iota(d, n), hn::Set(d, line.weight_step)), hn::Set(d, line.samples - 1));
     hn::Mask<F> is_inside;
     const VF value = trilinear(plane, weights, hn::GatherIndex(f, line.rest_mm, at),
-                               hn::GatherIndex(f, line.sigma_mm, at), is_inside);
+                               hn::GatherIndex(f, line.sigma_mm, at), at, is_inside);
     const VF weight = hn::IfThenElseZero(is_inside, hn::Mul(value, hn::Set(f, 1.0F / 255.0F)));
     hn::StoreU(weight, f, to + n);
     least = hn::Min(least, weight);
@@ -118,8 +123,8 @@ void add_plane(const PlaneLine& plane, const std::uint8_t* levels, const Panoram
       if (hn::AllTrue(f, hn::Eq(own, hn::Zero(f)))) continue;
     }
     hn::Mask<F> is_inside;
-    const VF level =
-        trilinear(plane, levels, hn::LoadU(f, line.rest_mm + s), hn::LoadU(f, line.sigma_mm + s), is_inside);
+    const VF level = trilinear(plane, levels, hn::LoadU(f, line.rest_mm + s), hn::LoadU(f, line.sigma_mm + s),
+                               hn::Iota(d, s), is_inside);
     const VF value = hn::Exp(f, hn::MulAdd(level, hn::Set(f, plane.log_step), hn::Set(f, plane.log_floor)));
     hn::StoreU(hn::MulAdd(own, value, hn::LoadU(f, power + s)), f, power + s);
     hn::StoreU(hn::Add(own, hn::LoadU(f, weight + s)), f, weight + s);
@@ -181,6 +186,25 @@ PlaneLine plane_line(const PanoramaMap& map, const PanoramaLine& line, float zet
   return plane;
 }
 
+/// Fills `to_rest` for a plane of a scanline and lets the plane use it.
+void move_plane(const PanoramaMap& map, const motion::PatientMotion& motion, const PanoramaLine& line,
+                std::array<std::vector<float>, 3>& to_rest, PlaneLine& plane) noexcept {
+  const volume::GridGeometry& grid = map.panorama->geometry;
+  const Pose &X_PU = map.panorama->X_PU, X_UP = X_PU.inverse();
+  find_rest_shifts(
+      motion, line.samples,
+      [&](int s) {
+        Vec3 index;
+        for (std::size_t a = 0; a < 3; ++a)
+          index[static_cast<Eigen::Index>(a)] = static_cast<double>(plane.origin[a] + plane.along[a] * line.rest_mm[s] +
+                                                                    plane.across[a] * line.sigma_mm[s]);
+        return index;
+      },
+      [&](const Vec3& index) { return X_PU * grid.to_mm(index); },
+      [&](const Vec3& p_A) { return grid.to_index(X_UP * p_A); }, to_rest);
+  for (std::size_t a = 0; a < 3; ++a) plane.to_rest[a] = to_rest[a].data();
+}
+
 }  // namespace
 
 BeamPlanes make_beam_planes(int count) noexcept {
@@ -238,10 +262,11 @@ void expand_samples(const std::vector<float>& from, int stride, int samples, flo
 void PanoramaSamples::fit(int samples) {
   power.assign(static_cast<std::size_t>(samples + kReadAhead), 0.0F);
   weight = power;
+  for (std::vector<float>& shift : to_rest) shift = power;
 }
 
-void sample_panorama(const PanoramaMap& map, const BeamPlanes& planes, const PanoramaLine& line,
-                     PanoramaSamples& samples) noexcept {
+void sample_panorama(const PanoramaMap& map, const motion::PatientMotion& motion, const BeamPlanes& planes,
+                     const PanoramaLine& line, PanoramaSamples& samples) noexcept {
   std::fill(samples.power.begin(), samples.power.end(), 0.0F);
   std::fill(samples.weight.begin(), samples.weight.end(), 0.0F);
   std::array<float, kMostWeights> weights;
@@ -251,7 +276,8 @@ void sample_panorama(const PanoramaMap& map, const BeamPlanes& planes, const Pan
   for (int order = 0; order < planes.count; ++order) {
     const int n = order == 1 ? planes.count - 1 : std::max(order - 1, 0);
     const auto at = static_cast<std::size_t>(n);
-    const PlaneLine plane = plane_line(map, line, planes.zeta[at], planes.share[at]);
+    PlaneLine plane = plane_line(map, line, planes.zeta[at], planes.share[at]);
+    if (!motion.is_rest()) move_plane(map, motion, line, samples.to_rest, plane);
     WeightRange range{1.0F, 1.0F};
     if (order < 2 || !is_within)
       range = HWY_DYNAMIC_DISPATCH(sample_weights)(plane, map.panorama->weights.data(), line, count, weights.data());

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "motion/patient_motion.h"
 #include "ultrasound/panorama/panorama.h"
 
 /// Samples of a panorama along a scanline (docs/physics.md U17).
@@ -57,13 +58,15 @@ void expand_samples(const std::vector<float>& from, int stride, int samples, flo
 struct PanoramaSamples {
   std::vector<float> power;   ///< Mean of 10^((level - tissue_db)/10) over the thickness; 0 where `weight` is 0.
   std::vector<float> weight;  ///< 0..1: share of the panorama.
+  /// Where the patient moves: from a sample's place now to its tissue at rest, in voxels along each axis.
+  std::array<std::vector<float>, 3> to_rest;
 
   void fit(int samples);
 };
 
-/// Fills `samples`. Allocates nothing.
-void sample_panorama(const PanoramaMap& map, const BeamPlanes& planes, const PanoramaLine& line,
-                     PanoramaSamples& samples) noexcept;
+/// Fills `samples`. Allocates nothing. The map is that of the transducer in the patient now, `motion` its motion.
+void sample_panorama(const PanoramaMap& map, const motion::PatientMotion& motion, const BeamPlanes& planes,
+                     const PanoramaLine& line, PanoramaSamples& samples) noexcept;
 
 /// Where a panorama begins near the face: it ends at the face of the transducer that acquired it, which has another
 /// shape.

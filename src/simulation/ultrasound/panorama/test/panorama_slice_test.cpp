@@ -1,5 +1,6 @@
 // Slices of panoramas with a closed form: places, thickness, gray levels.
 
+#include "motion/testing/sliding_motion.h"
 #include "ultrasound/panorama/detail/panorama_sampler.h"
 #include "ultrasound/panorama/test/panorama_lab.h"
 #include "ultrasound/scanner/scanner.h"
@@ -65,6 +66,39 @@ TEST(PanoramaSlice, PlacesABallByThePanoramaPose) {
   ASSERT_GT(area_mm2, 0.0);
   EXPECT_LT((sum / area_mm2 - centre_P).norm(), 0.5 * kSpacing_mm);
   EXPECT_NEAR(std::sqrt(area_mm2 / std::numbers::pi), kRadius_mm, 0.5 * kSpacing_mm);
+}
+
+TEST(PanoramaSlice, BallFollowsItsTissue) {
+  const Transducer transducer = linear();
+  const Vec3 centre_A(4.0, 27.0, 0.0);
+  const Pose X_PU = turned({0.3, 1.0, 0.2}, 0.4, {7.0, -3.0, 2.0});
+  const Vec3 centre_U = X_PU.inverse() * centre_A;
+  const auto panorama = make(paint_gray(Vec3(-60, -50, -50), Vec3(60, 90, 50), kSpacing_mm,
+                                        [&](const Vec3& p_U) { return (p_U - centre_U).norm() < 2.5 ? 220 : 60; }),
+                             X_PU);
+  PanoramaEngine engine(lossless(transducer), panorama, transducer, small_scan(transducer));
+  motion::MotionParts parts = motion::testing::sliding_model(-200.0, centre_A)->parts();
+  parts.modes[0].displacement_mm = {0.0, 9.0, 0.0};
+  parts.modes[0].axis_A = Vec3::UnitX();
+  parts.modes[0].centre_A = centre_A - 30.0 * Vec3::UnitX();
+  parts.modes[1].displacement_mm = {-6.0, 0.0, 0.0};
+  const auto model = *motion::MotionModel::make(std::move(parts), "test");
+  const motion::MotionClock clock{model.get(), motion::testing::sliding_drive()};
+  for (int n = 0; n < 10; ++n) {
+    BModeInput input;
+    input.motion = clock.at(0.4 * n);
+    const BasebandFrame& frame = engine.render(input);
+    Vec3 sum = Vec3::Zero();
+    double weight = 0.0;
+    for (int line = 0; line < frame.geometry.lines; ++line)
+      for (int sample = 0; sample < frame.geometry.samples; ++sample) {
+        if (level_at(frame, line, sample) < linear_level_db(140)) continue;
+        sum += place_of(frame, line, sample);
+        weight += 1.0;
+      }
+    ASSERT_GT(weight, 0.0);
+    EXPECT_LT((sum / weight - input.motion.to_now(centre_A)).norm(), 0.3) << n;
+  }
 }
 
 TEST(PanoramaSlice, WeightsAPlateByItsDistanceFromThePlane) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "xray/projection/moved_volume.h"
 #include "xray/projection/project.h"
 #include "xray/tools/iodine_pieces.h"
 
@@ -14,20 +15,20 @@ constexpr float kG_per_mg = 1e-3F;
 
 void AddedSignal::update_iodine(const FluoroscopyRequest& request, const PatientImage& patient) {
   const bool is_same =
-      iodine_ == request.iodine && arm_ && has_same_rays(*arm_, request.arm) && is_same_pose(X_PM_, request.X_PM);
+      iodine_ == request.iodine && arm_ && has_same_rays(*arm_, request.arm) && motion_.is_same_place(request.motion);
   if (is_same) return;
   iodine_ = request.iodine;
   arm_ = request.arm;
-  X_PM_ = request.X_PM;
+  motion_ = request.motion;
   iodine_g_per_cm2_.clear();
   if (!iodine_) return;
   for (const auto& grid : iodine_->grids_mg_per_ml) {
-    project(*grid, patient.rays(), request.X_PM, integrals_);
+    project(request.motion.is_rest() ? *grid : moved_grid(*grid, request.motion), patient.rays(), integrals_);
     iodine_g_per_cm2_.resize(integrals_.size(), 0.0F);
     for (std::size_t n = 0; n < integrals_.size(); ++n) iodine_g_per_cm2_[n] += kG_per_mg * integrals_[n];
   }
   if (!iodine_->pieces.empty())
-    add_iodine(iodine_->pieces, rays_in_body(patient.rays(), request.X_PM), iodine_g_per_cm2_);
+    add_iodine(moved_pieces(iodine_->pieces, request.motion), patient.rays(), iodine_g_per_cm2_);
 }
 
 void AddedSignal::apply(const FluoroscopyRequest& request, const PatientImage& patient, std::vector<float>& signal) {

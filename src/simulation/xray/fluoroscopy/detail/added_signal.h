@@ -20,7 +20,7 @@ class AddedSignal {
 
   std::shared_ptr<const Iodine> iodine_;  ///< Of iodine_g_per_cm2_.
   std::optional<CArm> arm_;
-  Pose X_PM_;
+  motion::PatientMotion motion_;
   std::vector<float> iodine_g_per_cm2_;  ///< Empty without contrast agent.
   std::vector<float> integrals_;         ///< Of one grid.
   MassImage added_;

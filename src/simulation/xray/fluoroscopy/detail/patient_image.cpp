@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "xray/projection/moved_volume.h"
 #include "xray/projection/project.h"
 
 namespace trocar::xray::detail {
@@ -27,10 +28,6 @@ bool has_same_rays(const CArm& a, const CArm& b) noexcept {
   return a == other;
 }
 
-bool is_same_pose(const Pose& a, const Pose& b) noexcept {
-  return a.p() == b.p() && a.R() == b.R();
-}
-
 void PatientImage::expose(const FluoroscopyRequest& request) {
   primary_.resize(masses_.size());
   beam_->signals(masses_, primary_);
@@ -39,14 +36,13 @@ void PatientImage::expose(const FluoroscopyRequest& request) {
 }
 
 Status PatientImage::update(const FluoroscopyRequest& request, const ExposureLimits& limits) {
-  const bool is_projected = key_ && has_same_rays(key_->arm, request.arm) && is_same_pose(key_->X_PM, request.X_PM);
+  const bool is_projected = key_ && has_same_rays(key_->arm, request.arm) && key_->motion.is_same_place(request.motion);
   if (!is_projected) {
-    CArm relative = request.arm;  // to the moved body
-    relative.isocentre_P = request.X_PM.inverse() * request.arm.isocentre_P;
-    TROCAR_TRY_STATUS(check_source(*volume_, relative));
+    if (!now_ || !key_ || !key_->motion.is_same_place(request.motion)) now_ = moved_volume(volume_, request.motion);
+    TROCAR_TRY_STATUS(check_source(*now_, request.arm));
     rays_ = rays_of(request.arm);
-    project(*volume_, rays_, request.X_PM, masses_);
-    key_ = Key{request.arm, request.X_PM};
+    project(*now_, rays_, masses_);
+    key_ = Key{request.arm, request.motion};
   }
   const ExposureKey wanted{request.arm.collimation, request.filters, request.dose_mode, request.pulses_per_s};
   if (is_projected && exposure_key_ == wanted) return {};

@@ -31,7 +31,7 @@ class PatientImage {
  private:
   struct Key {
     CArm arm;
-    Pose X_PM;
+    motion::PatientMotion motion;
   };
   struct ExposureKey {
     std::array<double, 2> collimation;
@@ -42,7 +42,8 @@ class PatientImage {
   };
   void expose(const FluoroscopyRequest& request);
 
-  std::shared_ptr<const XrayVolume> volume_;
+  std::shared_ptr<const XrayVolume> volume_;  ///< At rest.
+  std::shared_ptr<const XrayVolume> now_;     ///< Where the last image shows it.
   DetectorParams params_;
   BeamCache beams_;
   std::optional<Key> key_;
@@ -57,6 +58,5 @@ class PatientImage {
 
 /// True if both C-arms have the same rays.
 bool has_same_rays(const CArm& a, const CArm& b) noexcept;
-bool is_same_pose(const Pose& a, const Pose& b) noexcept;
 
 }  // namespace trocar::xray::detail

@@ -7,6 +7,7 @@
 
 #include "anatomy/patient.h"
 #include "core/parallel.h"
+#include "motion/testing/sliding_motion.h"
 #include "xray/detector/image_blur.h"
 #include "xray/fluoroscopy/testing/trunk_phantom.h"
 
@@ -237,7 +238,8 @@ TEST(Fluoroscope, MovesThePatientButNotTheTools) {
   FluoroscopyRequest request = small_request();
   request.iodine = duct();
   request.tools = {needle()};
-  request.X_PM = Pose::translation({8.0, 0.0, 0.0});
+  const auto model = motion::testing::uniform_model({8.0, 0.0, 0.0});
+  request.motion = motion::PatientMotion(model.get(), {.drivers = {1.0}});
   run(fluoroscope, request, 0.0);
   const std::vector<float>& signal = fluoroscope.clean_signal();
   EXPECT_LT(signal[pixel_of(request.arm, {33.0, 0, 0})], 0.8 * signal[pixel_of(request.arm, {25.0, 0, 0})]);

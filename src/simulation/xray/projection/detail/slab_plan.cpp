@@ -135,11 +135,11 @@ void add_plans(const IndexRays& rays, const DetectorTile& tile, const std::array
 
 }  // namespace
 
-IndexRays index_rays(const XrayRays& rays, const Pose& X_PM, const volume::GridGeometry& geometry) noexcept {
-  const Mat3 R_VP = geometry.R_PV.transpose() * X_PM.R().transpose();
+IndexRays index_rays(const XrayRays& rays, const volume::GridGeometry& geometry) noexcept {
+  const Mat3 R_VP = geometry.R_PV.transpose();
   const auto to_index = [&](const Vec3& v_P) -> Vec3 { return (R_VP * v_P).cwiseQuotient(geometry.spacing_mm); };
-  return {geometry.to_index(X_PM.inverse() * rays.source_P), to_index(rays.first_pixel_P - rays.source_P),
-          to_index(rays.column_P), to_index(rays.row_P), geometry.spacing_mm};
+  return {geometry.to_index(rays.source_P), to_index(rays.first_pixel_P - rays.source_P), to_index(rays.column_P),
+          to_index(rays.row_P), geometry.spacing_mm};
 }
 
 std::vector<SlabPlan> plan_slabs(const IndexRays& rays, int columns, int rows,

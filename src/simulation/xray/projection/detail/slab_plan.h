@@ -15,7 +15,7 @@ struct IndexRays {
   Vec3 source, direction, per_column, per_row;
   Vec3 spacing_mm;
 };
-IndexRays index_rays(const XrayRays& rays, const Pose& X_PM, const volume::GridGeometry& geometry) noexcept;
+IndexRays index_rays(const XrayRays& rays, const volume::GridGeometry& geometry) noexcept;
 
 /// A part of the detector.
 struct DetectorTile {

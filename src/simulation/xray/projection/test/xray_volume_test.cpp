@@ -48,7 +48,7 @@ struct View {
 };
 View look(const volume::CtGrid& ct, const CArm& arm) {
   View view{rays_of(arm), {}};
-  project(**XrayVolume::from_ct(ct), view.rays, {}, view.masses);
+  project(**XrayVolume::from_ct(ct), view.rays, view.masses);
   return view;
 }
 
@@ -138,7 +138,7 @@ TEST(XrayVolume, ProjectsATubeOfIodineInWater) {
     const double share = std::clamp(0.5 + (5.0 - std::hypot(p.x(), p.y())) / 0.5, 0.0, 1.0);
     iodine.voxels[n] = static_cast<float>(0.3 * share);  // g/ml
   }
-  project(iodine, view.rays, {}, view.masses.of(Basis::kIodine));
+  project(iodine, view.rays, view.masses.of(Basis::kIodine));
   const double expected = 0.3 * 1.0;
   EXPECT_NEAR(view.mass(Basis::kIodine, 32, 32), expected, 0.01 * expected);
   const double water = cylinder_chord_cm(view.rays, 32, 32);
@@ -167,7 +167,7 @@ TEST(XrayVolume, ExcludesObjectsOutsideTheBody) {
   const auto volume = XrayVolume::make(patient);
   ASSERT_TRUE(volume) << volume.error().text();
   View view{rays_of({.field_mm = 100.0, .pixels = 33}), {}};
-  project(**volume, view.rays, {}, view.masses);
+  project(**volume, view.rays, view.masses);
   const double at_60 = view.mass(Basis::kWater, 16, 16) * 0.2059 + view.mass(Basis::kBone, 16, 16) * 0.3102;
   EXPECT_NEAR(at_60, 10.0 * 0.2059, 0.01 * 10.0 * 0.2059);
   EXPECT_TRUE((*volume)->is_inside_body({0, 0, 0}));

@@ -211,16 +211,5 @@ TEST(IodinePieces, JoinWithoutAStep) {
     EXPECT_NEAR(image[static_cast<std::size_t>(63 * rays.columns + column)], expected, 0.01 * expected) << column;
 }
 
-TEST(IodinePieces, MoveWithTheBody) {
-  const XrayRays rays = rays_over_origin(0.5);
-  const IodinePiece piece{{-3, 0, 0}, {3, 2, 0}, 1.0, 2.0, 100.0};
-  const Vec3 shift(2.0, -4.0, 10.0);
-  const IodinePiece shifted{piece.a_P + shift, piece.b_P + shift, 1.0, 2.0, 100.0};
-  std::vector<float> moved, expected;
-  add_iodine({piece}, rays_in_body(rays, Pose::translation(shift)), moved);
-  add_iodine({shifted}, rays, expected);
-  for (std::size_t n = 0; n < moved.size(); ++n) EXPECT_NEAR(moved[n], expected[n], 1e-6);
-}
-
 }  // namespace
 }  // namespace trocar::xray

@@ -25,6 +25,7 @@ telemetry::TickSample at_target() {
   sample.time_s = 12.0;
   sample.tip_mm = plan_P.b;
   sample.axis = plan_P.direction();
+  telemetry::set_at_rest(sample);
   sample.depth_mm = plan_P.length_mm();
   sample.phase = telemetry::InsertionPhase::kInserted;
   return sample;

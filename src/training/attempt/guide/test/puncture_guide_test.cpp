@@ -21,6 +21,7 @@ class PunctureGuide : public ::testing::Test {
     telemetry::TickSample sample;
     sample.axis = the_case.plan.line_P.direction();
     sample.tip_mm = the_case.plan.line_P.a + depth_mm * sample.axis;
+    telemetry::set_at_rest(sample);
     sample.depth_mm = std::max(0.0, depth_mm);
     sample.phase = depth_mm > 0.0 ? telemetry::InsertionPhase::kInserted : telemetry::InsertionPhase::kOutside;
     return sample;
@@ -47,17 +48,17 @@ TEST_F(PunctureGuide, AdvisesAdvancingOnThePathAndFiringAtItsEnd) {
 
 TEST_F(PunctureGuide, StatesTheDirectionOfTheEntry) {
   telemetry::TickSample sample = on_path(-15.0);
-  sample.tip_mm += 40.0 * headward();
+  sample.rest_tip_mm += 40.0 * headward();
   EXPECT_TRUE(says(sample, "towards the feet")) << guide_puncture(the_case, sample);
   // An entry that lies lateral and further back is not called to be on the patient's back.
   const Vec3 sideways = the_case.plan.line_P.direction().cross(headward());
   sample = on_path(-15.0);
-  sample.tip_mm += 90.0 * headward() + 120.0 * sideways;
+  sample.rest_tip_mm += 90.0 * headward() + 120.0 * sideways;
   EXPECT_TRUE(says(sample, " mm towards the feet")) << guide_puncture(the_case, sample);
   EXPECT_TRUE(says(sample, sideways.x() > 0.0 ? "to the patient's right and" : "to the patient's left and"))
       << guide_puncture(the_case, sample) << sideways.transpose();
   sample = on_path(-15.0);
-  sample.tip_mm += 4.0 * Vec3::UnitX();
+  sample.rest_tip_mm += 4.0 * Vec3::UnitX();
   EXPECT_TRUE(says(sample, "to the patient's right")) << guide_puncture(the_case, sample);
 }
 
@@ -65,7 +66,7 @@ TEST_F(PunctureGuide, AdviceCorrectsTheNeedle) {
   const Vec3 axis = the_case.plan.line_P.direction();
   const double angle = 6.0 * 3.14159265 / 180.0;
   telemetry::TickSample outside = on_path(-15.0);
-  outside.axis = Eigen::AngleAxisd(angle, Vec3::UnitZ()) * axis;  // about z: x grows where y shrinks
+  outside.rest_axis = Eigen::AngleAxisd(angle, Vec3::UnitZ()) * axis;  // about z: x grows where y shrinks
   const std::string said = guide_puncture(the_case, outside);
   EXPECT_NE(said.find("6 degrees"), std::string::npos) << said;
   // The hub is at tip - axis: it has to go where outside.axis - axis looks.
@@ -73,7 +74,7 @@ TEST_F(PunctureGuide, AdviceCorrectsTheNeedle) {
   EXPECT_NE(said.find(way.x() > 0.0 ? "left" : "right"), std::string::npos) << said;
 
   telemetry::TickSample inside = on_path(20.0);
-  inside.tip_mm += 3.0 * headward();
+  inside.rest_tip_mm += 3.0 * headward();
   EXPECT_TRUE(says(inside, "3.0 mm from the path: tilt the tip towards the feet")) << guide_puncture(the_case, inside);
 }
 
@@ -89,6 +90,7 @@ TEST_F(PunctureGuide, WarnsOfBoneAheadFirst) {
   ASSERT_TRUE(bone_P);
   telemetry::TickSample sample = on_path(10.0);
   sample.tip_mm = *bone_P - 5.0 * sample.axis;
+  telemetry::set_at_rest(sample);
   const std::string said = guide_puncture(the_case, sample);
   EXPECT_NE(said.find("Bone"), std::string::npos) << said;
   EXPECT_NE(said.find("mm ahead"), std::string::npos) << said;
@@ -118,7 +120,7 @@ TEST_F(PunctureGuide, WarnsOnlyOfStructuresBeforeTheTarget) {
   const double length_mm = the_case.plan.line_P.length_mm();
   EXPECT_EQ(guide_puncture(changed, on_path(length_mm - 3.0)).find("Bone"), std::string::npos) << "behind the target";
   telemetry::TickSample beyond = on_path(length_mm + 2.0);  // on its way there
-  beyond.tip_mm += 8.0 * headward();
+  beyond.rest_tip_mm += 8.0 * headward();
   EXPECT_TRUE(guide_puncture(changed, beyond).find("Bone") != std::string::npos ||
               guide_puncture(changed, beyond).find("too deep") != std::string::npos)
       << guide_puncture(changed, beyond);
@@ -159,7 +161,7 @@ TEST_F(PunctureGuide, StatesTheResultOfAShotAndCompletion) {
 
 TEST_F(PunctureGuide, IsSilentForNonFinitePoses) {
   telemetry::TickSample sample = on_path(5.0);
-  sample.tip_mm.x() = std::numeric_limits<double>::quiet_NaN();
+  sample.rest_tip_mm.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(guide_puncture(the_case, sample), "");
   EXPECT_EQ(guide_puncture(the_case, telemetry::TickSample{}).empty(), false);  // a real place, if a strange one
 }

@@ -130,6 +130,7 @@ TEST_F(LiveOperatorTest, ExcludesOutagesFromTheAttemptTime) {
     sample.depth_mm = depth_mm;
     sample.axis = Vec3::UnitY();
     sample.tip_mm = {0.0, depth_mm, 0.0};
+    telemetry::set_at_rest(sample);
     ASSERT_TRUE(live_->take(sample));
   };
   constexpr double kStep_s = 0.01;

@@ -39,6 +39,7 @@ class GunRecordTest : public ::testing::Test {
     sample.axis = Vec3::UnitY();
     sample.depth_mm = depth_mm;
     sample.tip_mm = {0.0, depth_mm, 0.0};
+    telemetry::set_at_rest(sample);
     ASSERT_TRUE(record_->append(sample));
   }
   /// Length of the guide wire after it was advanced to `wanted_mm`.

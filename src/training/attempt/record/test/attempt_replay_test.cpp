@@ -76,10 +76,10 @@ storage::Session session_beside_the_path(double beside_mm) {
   const Segment& plan_P = session->info.plan_P.line_P;
   const Vec3 along_P = plan_P.direction();
   for (telemetry::TickSample& sample : session->samples)
-    sample.tip_mm = plan_P.a + (sample.tip_mm - plan_P.a).dot(along_P) * along_P;
+    sample.rest_tip_mm = plan_P.a + (sample.tip_mm - plan_P.a).dot(along_P) * along_P;
   telemetry::TickSample& middle = session->samples[session->samples.size() / 2];
   EXPECT_GT(middle.depth_mm, 1.0);
-  middle.tip_mm += beside_mm * along_P.unitOrthogonal();
+  middle.rest_tip_mm += beside_mm * along_P.unitOrthogonal();
   return *std::move(session);
 }
 

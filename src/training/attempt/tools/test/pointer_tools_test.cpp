@@ -7,6 +7,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "core/random.h"
+#include "motion/testing/sliding_motion.h"
 #include "volume/sampling.h"
 
 namespace trocar::attempt {
@@ -23,8 +24,8 @@ Segment path() {
   const Vec3 middle_P =
       grid.to_mm(Vec3(0.5 * static_cast<double>(grid.size[0]), 0.5 * static_cast<double>(grid.size[1]),
                       0.5 * static_cast<double>(grid.size[2])));
-  const Vec3 entry_P = nearest_skin_point(patient(), middle_P);
-  return {entry_P, entry_P + 60.0 * skin_inward(patient(), entry_P)};
+  const Vec3 entry_P = anatomy::SkinNow(patient()).nearest(middle_P);
+  return {entry_P, entry_P + 60.0 * anatomy::SkinNow(patient()).inward(entry_P)};
 }
 
 PointerNeedle needle() {
@@ -159,7 +160,7 @@ TEST(PointerNeedle, StaysFiniteAndInBoundsForAnyInput) {
     hand.push(pick());
     hand.turn(pick());
     ASSERT_TRUE(hand.X_PN().is_finite());
-    ASSERT_LE(angle_between_rad(hand.X_PN().R().col(2), skin_inward(patient(), hand.entry_P())),
+    ASSERT_LE(angle_between_rad(hand.X_PN().R().col(2), anatomy::SkinNow(patient()).inward(hand.entry_P())),
               PointerNeedle::kFlattest_rad + 1e-6);
   }
 }
@@ -203,7 +204,7 @@ TEST(PointerProbe, StaysOnTheSkinAndFacesInward) {
   hand.push(3.0);
   EXPECT_NEAR(hand.pressed_mm(), 3.0, 0.2);
   EXPECT_NEAR(volume::sample_linear(patient().skin_distance_mm, hand.X_PT().p()), -3.0, 0.5);
-  EXPECT_GT(hand.X_PT().R().col(1).dot(skin_inward(patient(), hand.X_PT().p())), 0.98);
+  EXPECT_GT(hand.X_PT().R().col(1).dot(anatomy::SkinNow(patient()).inward(hand.X_PT().p())), 0.98);
   EXPECT_NEAR(hand.X_PT().R().determinant(), 1.0, 1e-9);
 }
 
@@ -215,6 +216,23 @@ TEST(PointerProbe, TurnsAboutItsBeamAndLimitsPressDepth) {
   EXPECT_NEAR((hand.X_PT().R().col(1) - beam_P).norm(), 0.0, 1e-12);
   hand.push(100.0);
   EXPECT_DOUBLE_EQ(hand.pressed_mm(), PointerProbe::kDeepest_mm);
+}
+
+TEST(PointerTools, MoveWithTheSkin) {
+  const Segment path_A = path();
+  const auto model = motion::testing::uniform_model({0.0, -6.0, 4.0});
+  PointerNeedle needle(patient(), path_A, 150.0);
+  PointerProbe probe(patient(), Pose(Eigen::AngleAxisd(0.2, Vec3::UnitY()).toRotationMatrix(), path_A.a));
+  const Pose needle_rest = needle.X_PN(), probe_rest = probe.X_PT();
+  const motion::PatientMotion motion(model.get(), {.drivers = {1.0}});
+  needle.set_motion(motion);
+  probe.set_motion(motion);
+  EXPECT_LT((needle.X_PN().p() - needle_rest.p() - Vec3(0.0, -6.0, 4.0)).norm(), 1e-6);
+  EXPECT_LT((probe.X_PT().p() - probe_rest.p() - Vec3(0.0, -6.0, 4.0)).norm(), 1e-6);
+  needle.aim_at(path_A);
+  EXPECT_LT((needle.entry_P() - motion.to_now(path_A.a)).norm(), 1e-9);
+  needle.set_motion({});
+  EXPECT_LT((needle.entry_P() - path_A.a).norm(), 1e-6);
 }
 
 }  // namespace

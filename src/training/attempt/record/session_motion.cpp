@@ -1,0 +1,26 @@
+#include "attempt/record/session_motion.h"
+
+#include <algorithm>
+
+#include "haptics/scene_options.h"
+
+namespace trocar::attempt {
+
+SessionMotion::SessionMotion(const storage::Session& session, const anatomy::VirtualPatient& patient)
+    : model_(session.info.motion_hash.empty() ? nullptr : patient.motion.get()) {
+  for (const storage::SessionParameters& parameters : session.parameters) {
+    haptics::HapticOptions options;
+    haptics::DeviceCapability device;
+    if (haptics::restore_options(parameters.options, options, device))
+      drives_.emplace_back(parameters.time_s, options.motion);
+  }
+}
+
+motion::PatientMotion SessionMotion::at(const telemetry::TickSample& sample) const noexcept {
+  const auto next =
+      std::ranges::upper_bound(drives_, sample.time_s, {}, &std::pair<double, motion::MotionDrive>::first);
+  if (next == drives_.begin()) return {nullptr, motion::state_of_phase({}, sample.breathing, sample.time_s)};
+  return {model_, motion::state_of_phase(std::prev(next)->second, sample.breathing, sample.time_s)};
+}
+
+}  // namespace trocar::attempt
