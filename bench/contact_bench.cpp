@@ -8,7 +8,7 @@
 #include "bench/benchmarks.h"
 #include "bench/flat_scene.h"
 #include "core/files/data_dir.h"
-#include "haptics/closed_loop/push_trial.h"
+#include "lab/haptics/push_trial.h"
 
 namespace trocar::bench {
 namespace {

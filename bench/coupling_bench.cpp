@@ -12,7 +12,7 @@
 #include "bench/flat_scene.h"
 #include "core/files/data_dir.h"
 #include "core/parallel.h"
-#include "haptics/closed_loop/stability_trial.h"
+#include "lab/haptics/stability_trial.h"
 
 namespace trocar::bench {
 namespace {

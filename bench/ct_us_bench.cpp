@@ -17,8 +17,8 @@
 #include "core/random.h"
 #include "io/image/image_file.h"
 #include "io/sequence/transform_file.h"
+#include "lab/registration/generated_pair.h"
 #include "registration/ct_ultrasound/rigid_registration.h"
-#include "registration/ct_ultrasound/testing/generated_pair.h"
 
 namespace trocar::bench {
 namespace {

@@ -9,8 +9,8 @@
 #include "bench/benchmarks.h"
 #include "bench/flat_scene.h"
 #include "core/files/data_dir.h"
+#include "lab/server/slow_loop_trial.h"
 #include "server/scene_builder.h"
-#include "server/simulation/slow_loop_trial.h"
 
 namespace trocar::bench {
 namespace {

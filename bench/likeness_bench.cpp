@@ -11,9 +11,9 @@
 #include "bench/benchmarks.h"
 #include "core/files/data_dir.h"
 #include "io/sequence/sequence_file.h"
+#include "lab/ultrasound/picture_figures.h"
 #include "png/png_file.h"
 #include "ultrasound/engine/b_mode.h"
-#include "ultrasound/figures/picture_figures.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "ultrasound/scanner/scanner.h"
 

@@ -11,8 +11,8 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "core/progress.h"
 #include "core/result.h"
-#include "haptics/closed_loop/random_motion.h"
 #include "haptics/needle_geometry.h"
+#include "lab/haptics/random_motion.h"
 
 namespace trocar::bench {
 

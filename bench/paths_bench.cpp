@@ -12,8 +12,8 @@
 #include "bench/curve_output.h"
 #include "cases/needle_geometry.h"
 #include "cases/prepare_case.h"
-#include "cases/segmentation_study.h"
 #include "core/files/atomic_file.h"
+#include "lab/cases/segmentation_study.h"
 
 namespace trocar::bench {
 namespace {

@@ -12,8 +12,8 @@
 #include "io/image/image_file.h"
 #include "io/sequence/plus_config.h"
 #include "io/sequence/sequence_file.h"
+#include "lab/volume/correlation.h"
 #include "ultrasound/sweep/freehand.h"
-#include "volume/correlation.h"
 
 namespace trocar::bench {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "bench/benchmarks.h"
 #include "core/random.h"
+#include "lab/registration/volume_series.h"
 #include "registration/intensity/flatten.h"
 #include "registration/matching/match.h"
-#include "registration/phantom/volume_series.h"
 #include "registration/shadow/shadow_mask.h"
 
 namespace trocar::bench {

@@ -13,8 +13,8 @@
 #include "core/random.h"
 #include "io/image/image_file.h"
 #include "io/sequence/sequence_file.h"
+#include "lab/registration/volume_series.h"
 #include "registration/panorama/stitch.h"
-#include "registration/phantom/volume_series.h"
 #include "ultrasound/sweep/freehand.h"
 #include "volume/sampling.h"
 

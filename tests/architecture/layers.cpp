@@ -120,6 +120,7 @@ struct Place {
   bool has_window = false;  ///< The trainer: the only one to use Qt.
   bool is_test = false;
   bool is_bench = false;
+  bool is_lab = false;  ///< lab/MODULE: what only benchmarks and tests call.
 };
 
 std::optional<Place> find_place(const Modules& modules, const std::string& path) {
@@ -130,6 +131,15 @@ std::optional<Place> find_place(const Modules& modules, const std::string& path)
   place.is_program = path.starts_with("apps/");
   place.has_arguments = path.starts_with("apps/arguments/");
   place.has_window = path.starts_with("apps/trainer/");
+  if (path.starts_with("lab/")) {
+    place.module = path.substr(4, path.find('/', 4) - 4);
+    const auto found = modules.find(place.module);
+    if (found == modules.end()) return std::nullopt;
+    place.modules = reachable(modules, place.module);
+    place.libraries = found->second.libraries;
+    place.is_lab = true;
+    return place;
+  }
   if (path.starts_with("src/")) {
     const std::size_t behind_tier = path.find('/', 4);
     if (behind_tier == std::string::npos) return std::nullopt;
@@ -154,6 +164,12 @@ std::optional<std::string> complaint_about_ours(const Place& place, const std::s
   }
   const std::string target = header.substr(0, slash);
   if (target == "bench" && (place.is_bench || place.is_program)) return std::nullopt;
+  if (target == "lab") {
+    const std::string lab = header.substr(slash + 1, header.find('/', slash + 1) - slash - 1);
+    if (place.is_bench || (place.is_test && place.module.empty())) return std::nullopt;
+    if ((place.is_lab || place.is_test) && place.modules.contains(lab)) return std::nullopt;
+    return "laboratory code is for benchmarks, tests and itself";
+  }
   if (place.module.empty() && (place.is_test || place.has_window) && !place.modules.contains(target))
     return std::nullopt;  // a folder beside it, of the same program
   if (!place.modules.contains(target)) return "module " + target + " is not below it in src/modules.txt";

@@ -40,7 +40,7 @@ TEST(Messages, AreReportedWithTheirLines) {
 
 TEST(Messages, OfTheWholeProgramGiveAdvice) {
   std::size_t calls = 0;
-  for (const auto& [path, text] : source_files({"src", "apps", "bench"})) {
+  for (const auto& [path, text] : source_files({"src", "apps", "bench", "lab"})) {
     if (path.find("/test/") != std::string::npos) continue;
     calls += find_fail_calls(text).size();
     for (const std::string& complaint : check_messages(path, text)) ADD_FAILURE() << complaint;

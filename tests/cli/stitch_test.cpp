@@ -7,7 +7,7 @@
 #include "core/files/atomic_file.h"
 #include "io/image/image_file.h"
 #include "io/sequence/transform_file.h"
-#include "registration/phantom/volume_series.h"
+#include "lab/registration/volume_series.h"
 
 namespace trocar::cli_test {
 namespace {

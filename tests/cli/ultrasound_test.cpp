@@ -10,7 +10,7 @@
 #include "geometry/pose.h"
 #include "io/image/image_file.h"
 #include "io/sequence/transform_file.h"
-#include "volume/correlation.h"
+#include "lab/volume/correlation.h"
 #include "volume/sampling.h"
 
 namespace trocar::cli_test {

@@ -8,7 +8,7 @@
 #include "io/image/image_file.h"
 #include "io/sequence/plus_config.h"
 #include "io/sequence/sequence_file.h"
-#include "volume/correlation.h"
+#include "lab/volume/correlation.h"
 
 namespace trocar::testing {
 namespace {

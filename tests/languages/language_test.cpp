@@ -58,7 +58,7 @@ std::string report_of(const cases::Case& the_case, const char* operator_name) {
   const Attempt attempt = perform(the_case, operator_name, 3);
   report::ReportStory story;
   story.title = the_case.task.title;
-  story.needs_image = the_case.task.guidance == tasks::Guidance::kUltrasound;
+  story.needs_image = the_case.task.guidance == tasks::ImagingModality::kUltrasound;
   for (const attempt::AttemptEvent& action :
        attempt::describe_actions(the_case.substances, attempt.session, the_case.patient.get()))
     story.actions.push_back({action.time_s, action.depth_mm, action.text});
