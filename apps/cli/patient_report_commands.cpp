@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "anatomy/build_patient.h"
-#include "anatomy/patient_doubts.h"
+#include "anatomy/patient_findings.h"
 #include "cases/prepare_case.h"
 #include "commands.h"
 #include "config/json.h"
@@ -179,7 +179,7 @@ Result<std::vector<CheckedTask>> checked_tasks(const PatientArguments& arguments
 
 struct CheckResult {
   std::vector<CheckedTask> tasks;
-  std::vector<anatomy::Finding> doubts;
+  std::vector<anatomy::Finding> findings;
   bool has_panorama = false;
 };
 
@@ -187,15 +187,15 @@ Result<CheckResult> check_patient(const PatientArguments& arguments, const anato
                                   const Progress& progress) {
   CheckResult result;
   TROCAR_TRY(result.tasks, checked_tasks(arguments, patient, progress));
-  result.doubts = anatomy::find_all_doubts(patient, anatomy::label_statistics(patient));
-  if (patient.paths.empty()) result.doubts.push_back({"no expert path is stored; trocar run plans one", {}, {}});
+  result.findings = anatomy::all_patient_findings(patient, anatomy::label_statistics(patient));
+  if (patient.paths.empty()) result.findings.push_back({"no expert path is stored; trocar run plans one", {}, {}});
   if (cases::has_own_tissues(arguments.source.folder_or_name))
     if (const auto own = cases::load_own_tissues(arguments.source.folder_or_name); !own)
-      result.doubts.push_back({own.error().text(), {}, {}});
+      result.findings.push_back({own.error().text(), {}, {}});
   result.has_panorama = io::has_panorama(arguments.source);
   if (!result.has_panorama) return result;
   if (const auto panorama = io::load_panorama(arguments.source); !panorama)
-    result.doubts.push_back({panorama.error().text(), {}, {}});
+    result.findings.push_back({panorama.error().text(), {}, {}});
   return result;
 }
 
@@ -222,22 +222,22 @@ void print_check(const anatomy::VirtualPatient& patient, const CheckResult& resu
   if (is_json) {
     config::Json list = config::Json::array(), texts = config::Json::array(), derived = config::Json::array();
     for (const auto& [task, readiness] : result.tasks) list.push_back(readiness_json(task, readiness));
-    for (const anatomy::Finding& doubt : result.doubts) texts.push_back(doubt.text);
+    for (const anatomy::Finding& finding : result.findings) texts.push_back(finding.text);
     for (const anatomy::Label& label : patient.label_table.labels)
       if (label.is_derived) derived.push_back(label.name);
     print_json({{"name", patient.name},
                 {"tasks", list},
                 {"panorama", result.has_panorama},
                 {"doubtful", texts},
-                {"doubts", findings_json(result.doubts)},
+                {"doubts", findings_json(result.findings)},
                 {"repairs", findings_json(patient.repairs)},
                 {"derived", derived}});
     return;
   }
   for (const std::string& line : task_lines(result.tasks)) fmt::print("{}\n", line);
   if (result.has_panorama) fmt::print("{:<16} {}\n", "panorama", io::kPanoramaFile);
-  if (!result.doubts.empty()) fmt::print("doubtful\n");
-  for (const anatomy::Finding& doubt : result.doubts) fmt::print("  {}\n", doubt.text);
+  if (!result.findings.empty()) fmt::print("doubtful\n");
+  for (const anatomy::Finding& finding : result.findings) fmt::print("  {}\n", finding.text);
   if (!patient.repairs.empty()) fmt::print("repaired\n");
   for (const anatomy::Finding& repair : patient.repairs) fmt::print("  {}\n", repair.text);
   std::vector<std::string> derived;
@@ -256,7 +256,7 @@ Status write_pictures(const anatomy::VirtualPatient& patient, const CheckResult&
                                            temporary / fmt::format("{}_{}.png", kind, n + 1)));
       return {};
     };
-    TROCAR_TRY_STATUS(write(result.doubts, "doubt"));
+    TROCAR_TRY_STATUS(write(result.findings, "doubt"));
     return write(patient.repairs, "repair");
   });
 }
@@ -270,7 +270,7 @@ Status check(const PatientArguments& arguments) {
   if (!arguments.pictures.empty()) TROCAR_TRY_STATUS(write_pictures(patient, result, arguments.pictures));
   if (!arguments.report.empty())
     TROCAR_TRY_STATUS(write_file_atomically(
-        arguments.report, report::patient_report(patient, {task_lines(result.tasks), result.doubts})));
+        arguments.report, report::patient_report(patient, {task_lines(result.tasks), result.findings})));
   print_check(patient, result, arguments.is_json);
   return {};
 }

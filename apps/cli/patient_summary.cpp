@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "anatomy/patient_doubts.h"
+#include "anatomy/patient_findings.h"
 #include "config/json.h"
 #include "constants.h"
 #include "core/files/data_dir.h"
@@ -78,8 +78,8 @@ BuildSummary summarize_build(const anatomy::VirtualPatient& patient, const std::
   summary.labels = anatomy::label_statistics(patient);
   summary.body_ml = body_volume_ml(patient.skin_distance_mm);
   summary.warnings = std::move(warnings);
-  for (const anatomy::Finding& doubt : anatomy::find_all_doubts(patient, summary.labels))
-    summary.doubts.push_back(doubt.text);
+  for (const anatomy::Finding& finding : anatomy::all_patient_findings(patient, summary.labels))
+    summary.findings.push_back(finding.text);
   summary.tasks = tasks;
   for (const tasks::Task& task : tasks) {
     const auto needle = tasks::load_needle(data_dir() / "needles.toml", task.needle);
@@ -106,7 +106,7 @@ config::Json to_json(const BuildSummary& summary, const anatomy::VirtualPatient&
           {"labels", labels},
           {"meshes", surfaces},
           {"tasks", tasks},
-          {"doubtful", summary.doubts},
+          {"doubtful", summary.findings},
           {"warnings", summary.warnings}};
 }
 
@@ -130,8 +130,8 @@ void print_summary(const BuildSummary& summary, const anatomy::VirtualPatient& p
                          (readiness.posture ? fmt::format(" ({})", anatomy::posture_name(*readiness.posture)) : ""));
   fmt::print("tasks     {}\n",
              possible.empty() ? "none; see trocar patient check" : fmt::format("{}", fmt::join(possible, ", ")));
-  if (!summary.doubts.empty()) fmt::print("doubtful\n");
-  for (const std::string& doubt : summary.doubts) fmt::print("  {}\n", doubt);
+  if (!summary.findings.empty()) fmt::print("doubtful\n");
+  for (const std::string& finding : summary.findings) fmt::print("  {}\n", finding);
 }
 
 }  // namespace trocar::cli

@@ -21,7 +21,7 @@ struct BuildSummary {
   std::string folder;
   std::vector<anatomy::LabelStatistics> labels;
   double body_ml = 0.0;
-  std::vector<std::string> warnings, doubts;
+  std::vector<std::string> warnings, findings;
   std::vector<tasks::Task> tasks;
   std::vector<tasks::TaskReadiness> readiness;  ///< One element per task.
 };

@@ -87,7 +87,7 @@ void warn_of_landmarks(const std::optional<registration::LandmarkFit>& landmarks
   if (!landmarks) return;
   if (!landmarks->unmatched.empty())
     print_warning(fmt::format("landmarks without a partner are ignored: {}", fmt::join(landmarks->unmatched, ", ")));
-  if (!landmarks->doubt.empty()) print_warning(landmarks->doubt);
+  if (!landmarks->warning.empty()) print_warning(landmarks->warning);
 }
 
 config::Json to_json(const Found& result, const Inputs& inputs, double seconds) {

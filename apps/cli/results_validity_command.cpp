@@ -46,7 +46,7 @@ Result<cohort::Correction> parse_correction(const std::string& name) {
 
 /// The level of help. `--level 0.05` was the level of significance in older programs.
 Status check_level(const std::string& level) {
-  if (level.empty() || learning::find_level(level)) return {};
+  if (level.empty() || learning::find_training_mode(level)) return {};
   return fail_usage(fmt::format("unknown level of help \"{}\"", level), "--level",
                     "use guided, assisted or exam; the level of significance is --significance");
 }

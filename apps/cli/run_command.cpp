@@ -240,7 +240,7 @@ Result<cases::Case> make_case(const RunArguments& arguments, anatomy::VirtualPat
 Status change_body(RunArguments& arguments) {
   if (arguments.the_case.level.empty() || arguments.run.replayed != nullptr) return {};
   TROCAR_TRY(const cases::Case tables, cases::load_tables(arguments.the_case));
-  const tasks::Level* const level = tasks::level_of(tables.task);
+  const tasks::Tier* const level = tasks::level_of(tables.task);
   if (level == nullptr || level->body.empty()) return {};
   std::string& source = arguments.source.folder_or_name;
   if (io::is_path(source) || !anatomy::has_body(source)) {

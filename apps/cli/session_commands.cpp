@@ -102,7 +102,7 @@ report::ReportStory story_of(const storage::Session& session,
     return story;
   }
   story.title = the_case->task.title;
-  story.needs_image = the_case->task.guidance == tasks::Guidance::kUltrasound;
+  story.needs_image = the_case->task.guidance == tasks::ImagingModality::kUltrasound;
   story.steps = report::step_times(session, the_case->task, *patient, the_case->needle, the_case->plan);
   return story;
 }

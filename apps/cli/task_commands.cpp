@@ -22,7 +22,7 @@ Status list_tasks(bool is_json) {
   config::Json list = config::Json::array();
   for (const tasks::Task& task : tasks) {
     config::Json levels = config::Json::array();
-    for (const tasks::Level& level : task.levels) levels.push_back({{"name", level.name}, {"title", level.title}});
+    for (const tasks::Tier& level : task.levels) levels.push_back({{"name", level.name}, {"title", level.title}});
     list.push_back({{"name", task.name},
                     {"title", task.title},
                     {"organ", task.organ},

@@ -14,11 +14,11 @@ class TrainerChoiceText {
 }  // namespace
 
 bool needs_exam_body(const TrainerChoice& choice) {
-  return choice.difficulty == Difficulty::kExam && !io::is_path(choice.patient);
+  return choice.mode == TrainingMode::kExam && !io::is_path(choice.patient);
 }
 
 QString exam_text(const TrainerChoice& choice) {
-  if (choice.difficulty != Difficulty::kExam) return {};
+  if (choice.mode != TrainingMode::kExam) return {};
   const bool is_folder = !needs_exam_body(choice);
   const bool is_found = choice.exam_number != 0 && choice.patient_seed == choice.exam_number;
   if (!is_folder && !is_found) return {};  // it is being drawn

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "choice/difficulty.h"
+#include "choice/training_mode.h"
 
 namespace trocar::trainer {
 
@@ -20,7 +20,7 @@ struct TrainerChoice {
   bool is_tutorial = false;     ///< The guided first puncture: not recorded for a person.
   std::string needle;           ///< Empty: the default of the task.
   std::string force_model;      ///< Empty: the default of the task.
-  Difficulty difficulty = Difficulty::kGuided;
+  TrainingMode mode = TrainingMode::kGuided;
   /// Devices of needle and transducer: values of trocar-hapticd --device. "mouse" is the simulated device with a
   /// workspace for a whole body.
   std::string needle_device = "mouse";

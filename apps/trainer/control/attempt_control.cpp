@@ -44,11 +44,11 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
       needle_(*open_->the_case.patient, open_->the_case.plan.line_P, open_->the_case.needle.length_mm),
       probe_(*open_->the_case.patient, attempt_.options().X_PT_start.value_or(open_->X_PT_start)),
       planned_(open_),
-      hand_(open_, page.view_3d(), choice.difficulty != Difficulty::kExam),
+      hand_(open_, page.view_3d(), choice.mode != TrainingMode::kExam),
       is_led_{attempt::follows_targets(choice.needle_device), attempt::follows_targets(choice.probe_device)},
       keys_(page, [this](const QKeyEvent& key, const KeyPlace& place) { return take_key(key, place); }) {
   if (const auto& X_PN_start = attempt_.options().X_PN_start) needle_.put(*X_PN_start);
-  page_.workspace().show_help(choice_.difficulty);  // the replay of the last attempt showed all
+  page_.workspace().show_help(choice_.mode);  // the replay of the last attempt showed all
   page_.workspace().set_tip_hidden(is_tip_hidden());
   choose_layout(open_->the_case.task, page_.workspace());
   page_.xray().begin();
@@ -64,7 +64,7 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
     constexpr double kMoved_mm = 0.5;
     return (attempt_.view().needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
   });
-  page_.puncture().begin(kFullForce_n, choice_.difficulty == Difficulty::kGuided, open_->the_case.needle.is_biopsy,
+  page_.puncture().begin(kFullForce_n, choice_.mode == TrainingMode::kGuided, open_->the_case.needle.is_biopsy,
                          actions_of(open_->the_case.task, open_->the_case.needle));
   take(first_tool(open_->the_case.task));
 }
@@ -235,7 +235,7 @@ bool AttemptControl::is_free(attempt::Tool tool) const {
 }
 
 void AttemptControl::aim() {
-  if (choice_.difficulty != Difficulty::kGuided)
+  if (choice_.mode != TrainingMode::kGuided)
     return show_notice(tr("The planned position is available in guided attempts only."));
   const ActiveTool tool = gestures_.active_tool();
   if (tool == ActiveTool::kNone || tool == ActiveTool::kFinger)
@@ -410,7 +410,7 @@ void AttemptControl::show_panel() {
       view_.phase == attempt::AttemptPhase::kStarting || view_.phase == attempt::AttemptPhase::kFinishing;
   figures.hint = is_starting && notice_s_ <= 0.0 ? progress_text(view_) : hint();
   if (!is_tip_hidden()) figures.depth_mm = view_.needle.depth_mm;
-  if (choice_.difficulty == Difficulty::kGuided && view_.needle.is_known) figures.to_target_mm = distance_mm();
+  if (choice_.mode == TrainingMode::kGuided && view_.needle.is_known) figures.to_target_mm = distance_mm();
   figures.force_n = std::abs(view_.needle.resistance_n);
   figures.lag_mm = std::abs(view_.needle.lag_mm);
   figures.time_s = view_.session_s;
@@ -428,7 +428,7 @@ void AttemptControl::show_panel() {
 /// In an exam the loop sends no steps.
 void AttemptControl::show_steps() {
   const std::vector<tasks::Phase>& phases = open_->the_case.task.phases;
-  const bool is_guided = choice_.difficulty == Difficulty::kGuided;
+  const bool is_guided = choice_.mode == TrainingMode::kGuided;
   const bool has_help = is_guided && view_.current_phase && *view_.current_phase < phases.size();
   page_.puncture().steps().show_steps(
       view_.phases, view_.current_phase, view_.needle.time_s, is_guided,

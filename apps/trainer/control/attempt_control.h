@@ -71,7 +71,7 @@ class AttemptControl : public QObject {
   bool is_free(attempt::Tool tool) const;
   /// True in an exam that hides the needle tip in the body.
   bool is_tip_hidden() const noexcept { return is_exam() && !open_->the_case.task.exam_shows_needle; }
-  bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
+  bool is_exam() const noexcept { return choice_.mode == TrainingMode::kExam; }
   ViewScale scale_of_3d() const;
   ViewScale scale_of_ultrasound() const;
   QVariantMap solution_facts() const;

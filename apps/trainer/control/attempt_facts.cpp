@@ -39,7 +39,7 @@ QVariantMap AttemptControl::facts() const {
   add_step_facts(facts);
   hand_.add_facts(facts);
   facts[QStringLiteral("phase")] = QString::fromLatin1(to_string(view_.phase));
-  facts[QStringLiteral("level")] = QString::fromLatin1(name_of(choice_.difficulty));
+  facts[QStringLiteral("level")] = QString::fromLatin1(name_of(choice_.mode));
   facts[QStringLiteral("force_n")] = view_.needle.resistance_n;
   facts[QStringLiteral("lag_mm")] = view_.needle.lag_mm;
   facts[QStringLiteral("hint")] = hint();

@@ -18,17 +18,17 @@
 namespace trocar::trainer {
 namespace {
 
-Difficulty difficulty_of(learning::Level level) {
-  for (const Difficulty difficulty : {Difficulty::kGuided, Difficulty::kAssisted, Difficulty::kExam})
-    if (std::string_view(name_of(difficulty)) == learning::to_string(level)) return difficulty;
-  return Difficulty::kGuided;
+TrainingMode difficulty_of(learning::TrainingMode level) {
+  for (const TrainingMode mode : {TrainingMode::kGuided, TrainingMode::kAssisted, TrainingMode::kExam})
+    if (std::string_view(name_of(mode)) == learning::to_string(level)) return mode;
+  return TrainingMode::kGuided;
 }
 
 TrainerChoice choice_of(const learning::Exercise& exercise) {
   TrainerChoice choice;
   choice.task = exercise.task;
   choice.patient = exercise.patient;
-  choice.difficulty = difficulty_of(exercise.level);
+  choice.mode = difficulty_of(exercise.level);
   return choice;
 }
 

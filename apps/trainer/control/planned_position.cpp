@@ -54,7 +54,7 @@ std::optional<ActiveTool> tool_of(const tasks::Phase& phase) {
 QString planned_position_help(const tasks::Task& task, const tasks::Phase& phase) {
   const auto tool = tool_of(phase);
   if (!tool) return {};
-  if (*tool == ActiveTool::kNeedle && task.guidance == tasks::Guidance::kPalpation)
+  if (*tool == ActiveTool::kNeedle && task.guidance == tasks::ImagingModality::kPalpation)
     return QCoreApplication::translate("PlannedPosition",
                                        "Key P: a finger feels for bone. Stuck? Keys A, H: needle to "
                                        "the planned position");
@@ -65,7 +65,7 @@ QString planned_position_help(const tasks::Task& task, const tasks::Phase& phase
 
 ActiveTool first_tool(const tasks::Task& task) {
   if (task.phases.empty())
-    return task.guidance == tasks::Guidance::kUltrasound ? ActiveTool::kTransducer : ActiveTool::kNeedle;
+    return task.guidance == tasks::ImagingModality::kUltrasound ? ActiveTool::kTransducer : ActiveTool::kNeedle;
   return attempt::is_step_of_transducer(task.phases.front()) ? ActiveTool::kTransducer : ActiveTool::kNeedle;
 }
 

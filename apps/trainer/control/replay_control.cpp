@@ -105,7 +105,7 @@ QStringList notes_of(const attempt::AttemptReplay& replay, const std::vector<std
 }
 
 QString level_title(const std::string& name) {
-  for (const Difficulty level : {Difficulty::kGuided, Difficulty::kAssisted, Difficulty::kExam})
+  for (const TrainingMode level : {TrainingMode::kGuided, TrainingMode::kAssisted, TrainingMode::kExam})
     if (name == name_of(level)) return ReplayControl::tr(title_of(level));
   return {};
 }
@@ -130,7 +130,7 @@ ReplayControl::ReplayControl(attempt::AttemptReplay replay, std::shared_ptr<cons
   page_.feedback().show_cores(replay_.shots());
   page_.feedback().show_notes(notes_of(replay_, warnings));
   page_.workspace().show_help(
-      Difficulty::kGuided);  // after the attempt the expert's path is visible at every level of help
+      TrainingMode::kGuided);  // after the attempt the expert's path is visible at every level of help
   connect(&page_.feedback(), &FeedbackPanel::worst_requested, this, &ReplayControl::go_to_worst);
   connect(&page_.feedback().hints(), &HintList::moment_chosen, this, &ReplayControl::go_to);
   page_.feedback().expert_paths().show_rows(compare_with_experts(replay_, open_->the_case));
@@ -268,7 +268,7 @@ Status ReplayControl::save_report(const std::filesystem::path& file) const {
   const cases::Case& the_case = open_->the_case;
   report::ReportStory story;
   story.title = the_case.task.title;
-  story.needs_image = the_case.task.guidance == tasks::Guidance::kUltrasound;
+  story.needs_image = the_case.task.guidance == tasks::ImagingModality::kUltrasound;
   for (const attempt::AttemptEvent& action :
        attempt::describe_actions(the_case.substances, session, the_case.patient.get()))
     story.actions.push_back({action.time_s, action.depth_mm, action.text});

@@ -80,9 +80,9 @@ std::vector<LegendEntry> joined_legends(std::vector<LegendEntry> a, const std::v
 
 /// "Exam: Images and forces only. Exam 4711: an unseen body."
 QString level_line(const TrainerChoice& choice) {
-  const QString level = BriefingPage::tr(title_of(choice.difficulty));
+  const QString level = BriefingPage::tr(title_of(choice.mode));
   return QStringLiteral("%1: %2 %3")
-      .arg(level, BriefingPage::tr(help_text_of(choice.difficulty)), exam_text(choice))
+      .arg(level, BriefingPage::tr(help_text_of(choice.mode)), exam_text(choice))
       .trimmed();
 }
 
@@ -228,16 +228,16 @@ void BriefingPage::show_error(const QString& text) {
   state_->setWordWrap(true);
 }
 
-void BriefingPage::show_case(std::shared_ptr<const cases::OpenCase> open, Difficulty difficulty) {
+void BriefingPage::show_case(std::shared_ptr<const cases::OpenCase> open, TrainingMode mode) {
   open_ = std::move(open);
   choice_.patient = open_->choice.patient_source;
-  choice_.difficulty = difficulty;
+  choice_.mode = mode;
   const cases::Case& the_case = open_->the_case;
   show_tables(the_case, the_case.is_parenchymal);
   subtitle_->setText(level_line(choice_));
   std::vector<BriefingRow> rows = referral_rows(choice_);
   for (BriefingRow& row : finding_rows(the_case)) rows.push_back(std::move(row));
-  if (difficulty != Difficulty::kExam) rows.push_back(path_row(the_case));
+  if (mode != TrainingMode::kExam) rows.push_back(path_row(the_case));
   referral_->setText(form_html(rows));
   show_legend();
   for (QLabel* label : {axial_, second_}) show_picture(*label);
@@ -268,18 +268,17 @@ void BriefingPage::hinder_begin() {
 BriefingPlane BriefingPage::plane_of(const QLabel& label) const {
   if (&label == axial_) return BriefingPlane::kAxial;
   // A plane along the path would reveal the path.
-  return guidance_of(choice_.difficulty) == scene::Guidance::kPath ? BriefingPlane::kAlongPath
-                                                                   : BriefingPlane::kSagittal;
+  return guidance_of(choice_.mode) == scene::Guidance::kPath ? BriefingPlane::kAlongPath : BriefingPlane::kSagittal;
 }
 
 void BriefingPage::show_picture(QLabel& label) {
   if (!open_ || label.width() < 16 || label.height() < 16) return;
-  const scene::Guidance guidance = guidance_of(choice_.difficulty);
+  const scene::Guidance guidance = guidance_of(choice_.mode);
   label.setPixmap(QPixmap::fromImage(briefing_picture(*open_, plane_of(label), label.size(), guidance)));
 }
 
 void BriefingPage::show_legend() {
-  const scene::Guidance guidance = guidance_of(choice_.difficulty);
+  const scene::Guidance guidance = guidance_of(choice_.mode);
   std::vector<LegendEntry> entries;
   for (const QLabel* label : {axial_, second_}) {
     const QSize size = label->size().expandedTo({240, 120});

@@ -31,7 +31,7 @@ class BriefingPage : public QWidget {
   void show_opening(const TrainerChoice& choice);
   void show_progress(const QString& step, double fraction);
   void show_error(const QString& text);
-  void show_case(std::shared_ptr<const cases::OpenCase> open, Difficulty difficulty);
+  void show_case(std::shared_ptr<const cases::OpenCase> open, TrainingMode mode);
   /// Why Begin is not possible now, shown as its tooltip and beside it; empty: it is possible once a case is shown.
   void set_hindrance(const QString& reason);
   bool is_hindered() const noexcept { return !hindrance_.isEmpty(); }

@@ -146,13 +146,13 @@ QString goal_text(const tasks::Task& task, std::optional<bool> is_parenchymal) {
       .arg(words(task.organ));
 }
 
-QString guidance_text(tasks::Guidance guidance) {
+QString guidance_text(tasks::ImagingModality guidance) {
   switch (guidance) {
-    case tasks::Guidance::kUltrasound:
+    case tasks::ImagingModality::kUltrasound:
       return BriefingText::tr("ultrasound");
-    case tasks::Guidance::kXray:
+    case tasks::ImagingModality::kXray:
       return BriefingText::tr("fluoroscopy (X-ray)");
-    case tasks::Guidance::kPalpation:
+    case tasks::ImagingModality::kPalpation:
       return BriefingText::tr("palpation of the landmarks");
   }
   return {};
@@ -199,7 +199,7 @@ QString rule_of(const tasks::Task& task, std::string_view part) {
 
 /// Parts that an attempt is judged by, the heaviest first.
 std::vector<std::pair<std::string, double>> weighed_parts(const cases::Case& tables) {
-  const bool has_transducer = tables.task.guidance == tasks::Guidance::kUltrasound;
+  const bool has_transducer = tables.task.guidance == tasks::ImagingModality::kUltrasound;
   auto parts = scoring::judged_parts(tables.task, tables.needle, has_transducer);
   std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   return parts;
@@ -369,15 +369,15 @@ std::vector<BriefingRow> control_rows(const TrainerChoice& choice, const cases::
   }
   if (!is_needle_led) add_device(rows, choice.needle_device, true);
   if (!is_probe_led) add_device(rows, choice.probe_device, false);
-  if (choice.difficulty == Difficulty::kGuided && is_needle_led) add_action(rows, Action::kPlannedPosition);
+  if (choice.mode == TrainingMode::kGuided && is_needle_led) add_action(rows, Action::kPlannedPosition);
   if (tables != nullptr) {
     if (tables->needle.is_biopsy) add_action(rows, Action::kFire);
     for (const Action action : actions_of(tables->task, tables->needle)) add_action(rows, action);
-    if (tables->task.guidance == tasks::Guidance::kXray) {
+    if (tables->task.guidance == tasks::ImagingModality::kXray) {
       add_action(rows, Action::kFluoroscopy);
       add_action(rows, Action::kContrast);
     }
-    if (tables->task.guidance == tasks::Guidance::kPalpation) add_action(rows, Action::kSelectFinger);
+    if (tables->task.guidance == tasks::ImagingModality::kPalpation) add_action(rows, Action::kSelectFinger);
   }
   for (const Action action : {Action::kEnd, Action::kForces, Action::kKeys}) add_action(rows, action);
   return rows;

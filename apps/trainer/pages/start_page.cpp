@@ -34,10 +34,10 @@ namespace {
 constexpr int kSource = Qt::UserRole;
 constexpr int kMostFolders = 8;
 
-constexpr std::pair<Difficulty, const char*> kHelpLevels[] = {
-    {Difficulty::kGuided, "difficulty-guided"},
-    {Difficulty::kAssisted, "difficulty-assisted"},
-    {Difficulty::kExam, "difficulty-exam"},
+constexpr std::pair<TrainingMode, const char*> kHelpLevels[] = {
+    {TrainingMode::kGuided, "difficulty-guided"},
+    {TrainingMode::kAssisted, "difficulty-assisted"},
+    {TrainingMode::kExam, "difficulty-exam"},
 };
 
 QListWidgetItem* find_item(const QListWidget& list, const QString& source) {
@@ -143,8 +143,7 @@ StartPage::StartPage(QWidget* parent)
   last.force_model = text("start/model", {});
   last.needle_device = text("start/device", last.needle_device);
   last.probe_device = text("start/device-probe", last.probe_device);
-  last.difficulty =
-      static_cast<Difficulty>(std::clamp(settings.value(QStringLiteral("start/difficulty")).toInt(), 0, 2));
+  last.mode = static_cast<TrainingMode>(std::clamp(settings.value(QStringLiteral("start/difficulty")).toInt(), 0, 2));
   choose(last);
 }
 
@@ -192,12 +191,12 @@ QWidget* StartPage::make_help_choice() {
   QBoxLayout* content = nullptr;
   QFrame* card = make_card(tr("Level of help and tools"), content);
   difficulty_ = new QButtonGroup(this);
-  for (const auto& [difficulty, name] : kHelpLevels) {
-    const QString help = tr(help_text_of(difficulty));
-    auto* button = new QRadioButton(tr(title_of(difficulty)));
+  for (const auto& [mode, name] : kHelpLevels) {
+    const QString help = tr(help_text_of(mode));
+    auto* button = new QRadioButton(tr(title_of(mode)));
     button->setObjectName(QString::fromLatin1(name));
     button->setToolTip(help);
-    difficulty_->addButton(button, static_cast<int>(difficulty));
+    difficulty_->addButton(button, static_cast<int>(mode));
     content->addWidget(button);
     auto* text = make_label(help, "dim");
     text->setIndent(24);
@@ -271,7 +270,7 @@ void StartPage::choose_difficulty(int difficulty) {
 }
 
 void StartPage::lock_for_exam() {
-  const bool is_exam = difficulty_->checkedId() == static_cast<int>(Difficulty::kExam);
+  const bool is_exam = difficulty_->checkedId() == static_cast<int>(TrainingMode::kExam);
   exam_->setVisible(is_exam);
   for (QComboBox* box : {needle_, model_}) {
     box->setEnabled(!is_exam);
@@ -381,7 +380,7 @@ void StartPage::choose(const TrainerChoice& choice) {
     patients_->add_patient(folder_entry(patient));
     patients_->choose(patient);
   }
-  if (auto* button = difficulty_->button(static_cast<int>(choice.difficulty))) button->setChecked(true);
+  if (auto* button = difficulty_->button(static_cast<int>(choice.mode))) button->setChecked(true);
   const auto select = [](QComboBox& box, const std::string& value) {
     box.setCurrentIndex(std::max(0, box.findData(to_qt(value))));
   };
@@ -399,8 +398,8 @@ TrainerChoice StartPage::choice() const {
   if (const PatientEntry* patient = patients_->chosen()) choice.patient = to_std(patient->source);
   choice.needle_device = devices_->needle();
   choice.probe_device = devices_->probe();
-  choice.difficulty = static_cast<Difficulty>(difficulty_->checkedId());
-  if (choice.difficulty == Difficulty::kExam) {
+  choice.mode = static_cast<TrainingMode>(difficulty_->checkedId());
+  if (choice.mode == TrainingMode::kExam) {
     choice.exam_number = exam_->number();
   } else {  // an exam uses the task's own
     if (choice.patient == seeded_.patient) choice.patient_seed = seeded_.patient_seed;
@@ -415,13 +414,13 @@ void StartPage::save() const {
   QSettings settings;
   settings.setValue(QStringLiteral("start/task"), to_qt(now.task));
   settings.setValue(QStringLiteral("start/patient"), to_qt(now.patient));
-  if (now.difficulty != Difficulty::kExam) {  // which uses the task's own: those chosen before are kept
+  if (now.mode != TrainingMode::kExam) {  // which uses the task's own: those chosen before are kept
     settings.setValue(QStringLiteral("start/needle"), to_qt(now.needle));
     settings.setValue(QStringLiteral("start/model"), to_qt(now.force_model));
   }
   settings.setValue(QStringLiteral("start/device"), to_qt(now.needle_device));
   settings.setValue(QStringLiteral("start/device-probe"), to_qt(now.probe_device));
-  settings.setValue(QStringLiteral("start/difficulty"), static_cast<int>(now.difficulty));
+  settings.setValue(QStringLiteral("start/difficulty"), static_cast<int>(now.mode));
 }
 
 }  // namespace trocar::trainer

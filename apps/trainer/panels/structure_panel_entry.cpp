@@ -17,7 +17,7 @@ class StructurePanelEntry final : public View {
     panel_->rebuild();
     return true;
   }
-  void show_help(Difficulty) override { panel_->refresh(); }
+  void show_help(TrainingMode) override { panel_->refresh(); }
   void update(const FrameContext& frame) override {
     if (!panel_->isVisible()) return;
     if (!panel_->is_outdated()) return panel_->refresh();

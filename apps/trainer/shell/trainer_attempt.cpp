@@ -36,7 +36,7 @@ attempt::AttemptOptions TrainerFlow::attempt_options() const {
   options.session = state_folder_ / "sessions" / to_std(name + QStringLiteral(".trocar"));
   options.device_needle = choice_.needle_device;
   options.device_probe = choice_.probe_device;
-  options.level = name_of(choice_.difficulty);
+  options.level = name_of(choice_.mode);
   if (!is_exam()) options.force_model = to_std(window_.work().parameters().preview().model());
   options.is_guided = !is_exam();
   if (!choice_.is_tutorial) options.person_id = results_->person_id();

@@ -194,7 +194,7 @@ void TrainerFlow::show_replay(LoadingReplay loaded, Result<attempt::AttemptRepla
   if (!replay) {
     enter(Briefed());
     window_.show_page(QStringLiteral("briefing"));
-    window_.briefing().show_case(open_, choice_.difficulty);
+    window_.briefing().show_case(open_, choice_.mode);
     return window_.show_banner(sentence_of(replay.error()), BannerKind::kError);
   }
   window_.show_banner(shown(loaded.cut_short));

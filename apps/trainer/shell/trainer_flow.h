@@ -128,7 +128,7 @@ class TrainerFlow : public QObject {
   void show_replay(LoadingReplay loaded, Result<attempt::AttemptReplay> replay);
   void frame();
   void draw(double dt_s, double now_s);
-  bool is_exam() const noexcept { return choice_.difficulty == Difficulty::kExam; }
+  bool is_exam() const noexcept { return choice_.mode == TrainingMode::kExam; }
   double now_s() const { return static_cast<double>(clock_.nsecsElapsed()) / 1e9; }
 
   MainWindow& window_;

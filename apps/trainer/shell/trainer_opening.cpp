@@ -86,11 +86,11 @@ void TrainerFlow::show_opened(Opening& opening) {
   std::optional<attempt::JournalClaim> cut_off = std::move(opening.cut_off);
   enter(Briefed());        // ends `opening`
   release_freed_memory();  // memory of the previous case and of opening
-  window_.work().workspace().show_help(choice_.difficulty);
+  window_.work().workspace().show_help(choice_.mode);
   // An exam shows no target, whose depth this is.
   const double depth_mm = is_exam() ? open_->neutral.depth_mm : open_->probe_depth_mm;
   window_.work().ultrasound().change_settings([&](UltrasoundSettings& s) { s.acquisition.depth_mm = depth_mm; });
-  window_.briefing().show_case(open_, choice_.difficulty);
+  window_.briefing().show_case(open_, choice_.mode);
   if (!cut_off) return;
   window_.briefing().show_progress(tr("Reading the recording"), 0.0);
   window_.briefing().set_hindrance(tr("The recording of the interrupted attempt is being read."));

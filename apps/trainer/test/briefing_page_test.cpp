@@ -59,7 +59,7 @@ TEST(BriefingPage, NamesTheKeysOfTheTasksActions) {
 
 TEST(BriefingPage, ShowsWhyAnAttemptCannotBegin) {
   BriefingPage page;
-  page.show_case(open_abdomen(), Difficulty::kGuided);
+  page.show_case(open_abdomen(), TrainingMode::kGuided);
   auto* begin = page.findChild<QPushButton*>(QStringLiteral("begin"));
   EXPECT_TRUE(begin->isEnabled());
   page.set_hindrance(QStringLiteral("The disk is full."));
@@ -75,7 +75,7 @@ TEST(BriefingPage, ShowsWhyAnAttemptCannotBegin) {
 TEST(BriefingPage, GivesNoButtonTheFocusWhenBeginIsDisabled) {
   BriefingPage page;
   page.show();
-  page.show_case(open_abdomen(), Difficulty::kGuided);
+  page.show_case(open_abdomen(), TrainingMode::kGuided);
   const auto* begin = page.findChild<QPushButton*>(QStringLiteral("begin"));
   EXPECT_EQ(page.focusWidget(), begin);
   page.set_hindrance(QStringLiteral("The disk is full."));
@@ -163,7 +163,7 @@ TEST(BriefingPage, AddsLesionAndLegendWhenThePatientIsLoaded) {
   page.show();
   page.show_opening({});
   EXPECT_TRUE(text_of(page, "briefing-legend").isEmpty());
-  page.show_case(open_abdomen(), Difficulty::kAssisted);
+  page.show_case(open_abdomen(), TrainingMode::kAssisted);
   static const QRegularExpression size(QStringLiteral("lesion of ([0-9]+) × ([0-9]+) × ([0-9]+) mm"));
   const auto found = size.match(text_of(page, "briefing-referral"));
   ASSERT_TRUE(found.hasMatch()) << text_of(page, "briefing-referral").toStdString();
@@ -231,10 +231,10 @@ TEST(BriefingPage, ShowsTheCaseAndEnablesBegin) {
   page.show();
   page.show_opening({});
   QCoreApplication::processEvents();
-  page.show_case(open_abdomen(), Difficulty::kGuided);
+  page.show_case(open_abdomen(), TrainingMode::kGuided);
   EXPECT_TRUE(page.findChild<QPushButton*>(QStringLiteral("begin"))->isEnabled());
   save(page, "briefing_guided.png");
-  page.show_case(open_abdomen(), Difficulty::kAssisted);
+  page.show_case(open_abdomen(), TrainingMode::kAssisted);
   save(page, "briefing_assisted.png");
   bool says_help = false;
   for (const QLabel* label : page.findChildren<QLabel*>())
@@ -262,9 +262,9 @@ TEST(BriefingPage, HidesThePlannedPathInAnExam) {
     return std::any_of(labels.begin(), labels.end(),
                        [&](const QLabel* label) { return label->text().contains(QString::fromUtf8(text)); });
   };
-  page.show_case(open_abdomen(), Difficulty::kAssisted);
+  page.show_case(open_abdomen(), TrainingMode::kAssisted);
   EXPECT_TRUE(says("lesion of the liver") && says("Planned path"));
-  page.show_case(open_abdomen(), Difficulty::kExam);
+  page.show_case(open_abdomen(), TrainingMode::kExam);
   EXPECT_TRUE(says("lesion of the liver"));
   EXPECT_FALSE(says("Planned path"));
   save(page, "briefing_exam.png");

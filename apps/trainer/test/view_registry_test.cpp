@@ -34,7 +34,7 @@ class DummyView final : public View {
     if (context.open) ++received_.opened;
     return true;
   }
-  void show_help(Difficulty) override { ++received_.helped; }
+  void show_help(TrainingMode) override { ++received_.helped; }
   void set_tip_hidden(bool) override { ++received_.hidden; }
   void show_tools(const ToolContext& context) override {
     ++received_.tools;
@@ -100,7 +100,7 @@ TEST_F(ViewRegistryTest, PlacesARegisteredViewInLayouts) {
 TEST_F(ViewRegistryTest, RegisteredViewReceivesCaseToolsAndFrames) {
   Workspace workspace(with_dummy());
   workspace.show_case(open_abdomen());
-  workspace.show_help(Difficulty::kGuided);
+  workspace.show_help(TrainingMode::kGuided);
   const Segment& path_P = open_abdomen()->the_case.plan.line_P;
   ToolsShown tools;
   tools.shaft_P = {path_P.a - 100.0 * path_P.direction(), path_P.b};

@@ -43,25 +43,25 @@ TEST(Workspace, ShowsThePlanPerHelpLevel) {
   auto* lesion_eye = workspace.findChild<QToolButton*>(QStringLiteral("structure-eye-liver-lesion-1"));
   ASSERT_NE(lesion_eye, nullptr);
   struct Expected {
-    Difficulty difficulty;
+    TrainingMode mode;
     scene::Guidance in_space;
     bool has_target, is_guide_offered, is_guide_shown;
   };
   double last_path = 1.0;
-  for (const Expected& e : {Expected{Difficulty::kGuided, scene::Guidance::kPath, true, true, true},
-                            Expected{Difficulty::kAssisted, scene::Guidance::kTarget, true, true, false},
-                            Expected{Difficulty::kExam, scene::Guidance::kNone, false, false, false}}) {
-    workspace.show_help(e.difficulty);
+  for (const Expected& e : {Expected{TrainingMode::kGuided, scene::Guidance::kPath, true, true, true},
+                            Expected{TrainingMode::kAssisted, scene::Guidance::kTarget, true, true, false},
+                            Expected{TrainingMode::kExam, scene::Guidance::kNone, false, false, false}}) {
+    workspace.show_help(e.mode);
     EXPECT_EQ(workspace.find<PatientView>("3d")->scene().guidance(), e.in_space);
     EXPECT_EQ(workspace.find<UltrasoundView>("ultrasound")->is_guide_offered(), e.is_guide_offered);
     EXPECT_EQ(workspace.find<UltrasoundView>("ultrasound")->is_guide_visible(), e.is_guide_shown);
     EXPECT_EQ(workspace.findChild<QToolButton*>(QStringLiteral("show-guidance"))->isEnabled(),
               e.in_space != scene::Guidance::kNone);
-    EXPECT_EQ(share_near(axial->grab().toImage(), theme().target, 8) > 0.0002, e.has_target) << title_of(e.difficulty);
-    EXPECT_EQ(share_near(axial->grab().toImage(), lesion, 12) > 0.0001, e.has_target) << title_of(e.difficulty);
-    EXPECT_EQ(!lesion_eye->parentWidget()->isHidden(), e.has_target) << title_of(e.difficulty);
+    EXPECT_EQ(share_near(axial->grab().toImage(), theme().target, 8) > 0.0002, e.has_target) << title_of(e.mode);
+    EXPECT_EQ(share_near(axial->grab().toImage(), lesion, 12) > 0.0001, e.has_target) << title_of(e.mode);
+    EXPECT_EQ(!lesion_eye->parentWidget()->isHidden(), e.has_target) << title_of(e.mode);
     const double path = share_of(theme().path);  // the entry zone's circle has its colour too
-    EXPECT_LE(path, last_path) << title_of(e.difficulty);
+    EXPECT_LE(path, last_path) << title_of(e.mode);
     last_path = path;
   }
 }
@@ -189,7 +189,7 @@ TEST(Workspace, SlicesHideTheDepthOfAHiddenTip) {
   workspace.choose_layout(QStringLiteral("Slices"));
   workspace.show();
   workspace.show_case(open_abdomen());
-  workspace.show_help(Difficulty::kExam);
+  workspace.show_help(TrainingMode::kExam);
   QCoreApplication::processEvents();
   auto* axial = workspace.findChild<SliceView*>(QStringLiteral("slice-axial"));
   const Vec3 entry_P = open_abdomen()->the_case.plan.line_P.a;

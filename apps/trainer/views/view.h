@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cases/open_case.h"
-#include "choice/difficulty.h"
+#include "choice/training_mode.h"
 #include "views/tools_shown.h"
 
 class QWidget;
@@ -81,8 +81,8 @@ class View {
   virtual bool open(const CaseContext&) { return false; }
   /// Called once per frame while a case is open, also before an attempt: takes data that have become ready.
   virtual void take_later_data() {}
-  /// Shows the guidance that the difficulty permits.
-  virtual void show_help(Difficulty) {}
+  /// Shows the guidance that the mode permits.
+  virtual void show_help(TrainingMode) {}
   /// Replaces the paths of the case.
   virtual void show_expert_paths(const ExpertPaths&) {}
   /// In an exam, the view must not show the depth of the tip.

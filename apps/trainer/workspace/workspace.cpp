@@ -109,8 +109,8 @@ void Workspace::take_later_data() {
   for (const auto& view : views_) view->take_later_data();
 }
 
-void Workspace::show_help(Difficulty difficulty) {
-  for (const auto& view : views_) view->show_help(difficulty);
+void Workspace::show_help(TrainingMode mode) {
+  for (const auto& view : views_) view->show_help(mode);
 }
 
 void Workspace::show_expert_paths(const ExpertPaths& paths) {

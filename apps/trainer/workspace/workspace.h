@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cases/open_case.h"
-#include "choice/difficulty.h"
+#include "choice/training_mode.h"
 #include "views/tools_shown.h"
 #include "views/view.h"
 #include "views/view_registry.h"
@@ -37,7 +37,7 @@ class Workspace : public QMainWindow {
   /// Called once per frame while a case is open: the views take data that have become ready.
   void take_later_data();
   /// Sets the guidance in all views; panels and keys of the views cannot show more.
-  void show_help(Difficulty difficulty);
+  void show_help(TrainingMode mode);
   /// Replaces the planned path in all views until the next call or case.
   void show_expert_paths(const ExpertPaths& paths);
   /// Hidden: slices and 3D show the needle up to the skin only, slices do not follow it, and the plot has no depth. The

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "haptics/closed_loop/closed_loop.h"
 #include "haptics/closed_loop/rotation.h"
+#include "haptics/closed_loop/virtual_stylus.h"
 #include "haptics/gate/device_gate.h"
 
 namespace trocar::server {

@@ -1,4 +1,4 @@
-#include "anatomy/patient_doubts.h"
+#include "anatomy/patient_findings.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,37 +9,38 @@
 
 namespace trocar::anatomy {
 
-std::vector<Finding> find_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics) {
+std::vector<Finding> patient_findings(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics) {
   constexpr double kCoarse_mm = 2.5;
-  std::vector<Finding> doubts;
+  std::vector<Finding> findings;
   const Vec3& spacing = patient.ct.geometry.spacing_mm;
   if (spacing.maxCoeff() > kCoarse_mm)
-    doubts.push_back({fmt::format("voxels of {:.2f} x {:.2f} x {:.2f} mm: thin structures can be missing", spacing.x(),
-                                  spacing.y(), spacing.z()),
-                      {},
-                      {}});
-  for (Finding& doubt : find_implausible_hu(patient, statistics)) doubts.push_back(std::move(doubt));
+    findings.push_back({fmt::format("voxels of {:.2f} x {:.2f} x {:.2f} mm: thin structures can be missing",
+                                    spacing.x(), spacing.y(), spacing.z()),
+                        {},
+                        {}});
+  for (Finding& finding : find_implausible_hu(patient, statistics)) findings.push_back(std::move(finding));
   std::vector<std::string> cut_off;
   for (const LabelStatistics& s : statistics) {
     const Label* label = patient.label_table.find(s.id);
     if (label == nullptr) continue;
-    if (s.voxels == 0) doubts.push_back({label->name + " is in the label table but has no voxels", label->name, {}});
+    if (s.voxels == 0) findings.push_back({label->name + " is in the label table but has no voxels", label->name, {}});
     // Fat and muscle extend to every border of a scan; an organ that does is cut off.
     const bool is_filling = label->tissue == "adipose" || label->tissue == "muscle";
     if (s.touches_border && !is_filling && !label->is_derived) cut_off.push_back(label->name);
   }
   if (!cut_off.empty())
-    doubts.push_back({fmt::format("cut off by the edge of the scan: {}", fmt::join(cut_off, ", ")), {}, {}});
-  return doubts;
+    findings.push_back({fmt::format("cut off by the edge of the scan: {}", fmt::join(cut_off, ", ")), {}, {}});
+  return findings;
 }
 
-std::vector<Finding> find_all_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics) {
-  std::vector<Finding> doubts = find_doubts(patient, statistics);
-  for (Finding& doubt : find_segmentation_doubts(patient)) doubts.push_back(std::move(doubt));
+std::vector<Finding> all_patient_findings(const VirtualPatient& patient,
+                                          const std::vector<LabelStatistics>& statistics) {
+  std::vector<Finding> findings = patient_findings(patient, statistics);
+  for (Finding& finding : segmentation_findings(patient)) findings.push_back(std::move(finding));
   for (const AnatomyFinding& finding : judge_anatomy(patient))
     if (finding.name != kHu && !is_confirmed(patient.provenance, finding.name))  // HU stand above, a line each
-      doubts.push_back({fmt::format("{}: {}", finding.name, finding.text), {}, {}});
-  return doubts;
+      findings.push_back({fmt::format("{}: {}", finding.name, finding.text), {}, {}});
+  return findings;
 }
 
 }  // namespace trocar::anatomy

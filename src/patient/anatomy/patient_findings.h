@@ -6,10 +6,11 @@
 
 namespace trocar::anatomy {
 
-/// Doubts about the quality of a patient, one line each: coarse voxels, labels with implausible HU, listed labels
+/// Findings about the quality of a patient, one line each: coarse voxels, labels with implausible HU, listed labels
 /// without voxels, structures cut off at the edge of the scan.
-std::vector<Finding> find_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics);
-/// These and the slower ones of find_segmentation_doubts.
-std::vector<Finding> find_all_doubts(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics);
+std::vector<Finding> patient_findings(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics);
+/// These and the slower ones of segmentation_findings.
+std::vector<Finding> all_patient_findings(const VirtualPatient& patient,
+                                          const std::vector<LabelStatistics>& statistics);
 
 }  // namespace trocar::anatomy

@@ -22,7 +22,7 @@ struct ImportedPatient {
   std::vector<anatomy::NamedMesh> meshes;            ///< Surfaces by the names that the labels had at the import.
   std::vector<anatomy::LabelStatistics> statistics;  ///< Statistics of the patient's labels.
   std::vector<std::string> warnings;                 ///< Warnings of the import, one line each.
-  std::vector<anatomy::Finding> doubts;              ///< Of the segmentation (find_segmentation_doubts).
+  std::vector<anatomy::Finding> findings;            ///< Of the segmentation (segmentation_findings).
   std::vector<anatomy::AnatomyFinding> findings;     ///< About the whole segmentation; some may be confirmed.
   std::string source;                                ///< As given by the user: a file, a folder, an embedded patient.
   std::string own_tissues;                           ///< Text of the patient's own tissue table; empty: none.

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "anatomy/patient_doubts.h"
+#include "anatomy/patient_findings.h"
 #include "anatomy/plausibility/judge_anatomy.h"
 #include "case_builder/detail/in_volume.h"
 #include "case_builder/ultrasound.h"
@@ -72,18 +72,20 @@ class Checks {
   }
 
   void check_labels() {
-    const std::vector<anatomy::Finding> doubts = anatomy::find_doubts(patient_, statistics_);
-    for (const anatomy::Finding& doubt : draft_.imported->doubts) warn(CaseStep::kLabels, doubt.text, doubt.place_P);
-    for (const anatomy::Finding& doubt : doubts) warn(CaseStep::kLabels, doubt.text, doubt.place_P);
+    const std::vector<anatomy::Finding> findings = anatomy::patient_findings(patient_, statistics_);
+    for (const anatomy::Finding& finding : draft_.imported->findings)
+      warn(CaseStep::kLabels, finding.text, finding.place_P);
+    for (const anatomy::Finding& finding : findings) warn(CaseStep::kLabels, finding.text, finding.place_P);
     const auto& findings = draft_.imported->findings;
     for (const anatomy::AnatomyFinding& finding : findings)
       if (!anatomy::is_confirmed(draft_.provenance, finding.name)) warn(CaseStep::kImport, finding.text);
     for (const std::string& warning : draft_.imported->warnings) {
-      const auto is_same = [&](const anatomy::Finding& doubt) { return doubt.text == warning; };
+      const auto is_same = [&](const anatomy::Finding& finding) { return finding.text == warning; };
       const auto is_finding = [&](const anatomy::AnatomyFinding& finding) { return warning.starts_with(finding.text); };
-      const bool is_told = std::any_of(doubts.begin(), doubts.end(), is_same) ||
-                           std::any_of(findings.begin(), findings.end(), is_finding) ||
-                           warning.starts_with("cut off by the border of the CT");  // the same doubt in different words
+      const bool is_told =
+          std::any_of(findings.begin(), findings.end(), is_same) ||
+          std::any_of(findings.begin(), findings.end(), is_finding) ||
+          warning.starts_with("cut off by the border of the CT");  // the same finding in different words
       if (!is_told) warn(CaseStep::kImport, warning);
     }
     look_outside();
@@ -221,7 +223,7 @@ class Checks {
     if (draft_.ultrasound_landmarks.size() >= 3) {
       const auto fit = fit_of_landmarks(draft_);
       if (!fit) warn(CaseStep::kUltrasound, fit.error().text());
-      if (fit && !fit->doubt.empty()) warn(CaseStep::kUltrasound, fit->doubt, place_of(fit->worst));
+      if (fit && !fit->warning.empty()) warn(CaseStep::kUltrasound, fit->warning, place_of(fit->worst));
     }
     if (!draft_.placement)
       return warn(CaseStep::kUltrasound, "the recorded ultrasound has no pose in the CT: it cannot be shown");

@@ -86,7 +86,7 @@ Result<CaseDraft> import_case(const ImportRequest& request, const Progress& prog
     imported->meshes = surface::extract_surfaces(imported->patient, {}, surfaces);
   }
   imported->statistics = anatomy::label_statistics(imported->patient);
-  imported->doubts = anatomy::find_segmentation_doubts(imported->patient);
+  imported->findings = anatomy::segmentation_findings(imported->patient);
 
   CaseDraft draft;
   draft.name = imported->patient.name;

@@ -182,11 +182,11 @@ Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice,
     TROCAR_TRY_STATUS(std::move(has_case));
     made->server_source = std::move(server_source);
     TROCAR_TRY(made->flow, flow_of(patient));
-    TROCAR_TRY(made->later,
-               begin_later(choice, patient,
-                           made->the_case.task.guidance == tasks::Guidance::kUltrasound ? LaterData::First::kUltrasound
-                                                                                        : LaterData::First::kSurfaces,
-                           options));
+    TROCAR_TRY(made->later, begin_later(choice, patient,
+                                        made->the_case.task.guidance == tasks::ImagingModality::kUltrasound
+                                            ? LaterData::First::kUltrasound
+                                            : LaterData::First::kSurfaces,
+                                        options));
   }
   add_panorama(*made, previous.get());
   if (!made->flow->is_possible())

@@ -209,7 +209,7 @@ std::vector<tasks::PlannedPath> find_experts(const Case& the_case, const anatomy
   return experts;
 }
 
-std::string with_body(const std::string& patient, const tasks::Level& level) {
+std::string with_body(const std::string& patient, const tasks::Tier& level) {
   std::string source = patient;
   for (const auto& [key, factor] : level.body)
     source += fmt::format("{}{}={}", source.size() == patient.size() ? anatomy::kBodySign : ',', key, factor);

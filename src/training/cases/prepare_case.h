@@ -55,7 +55,7 @@ struct Case {
 Result<Case> load_tables(const CaseOptions& options);
 
 /// Source of an embedded patient with the body of a level: "biopsy-1@weight_kg=1.3".
-std::string with_body(const std::string& patient, const tasks::Level& level);
+std::string with_body(const std::string& patient, const tasks::Tier& level);
 
 /// The plan of a case and the other paths that the patient brings for its task. A biopsy needle has only its plan.
 std::vector<tasks::PlannedPath> find_experts(const Case& the_case, const anatomy::VirtualPatient& patient);

@@ -143,7 +143,7 @@ Result<std::string> digest_of_data(const fs::path& data_folder) {
 Result<storage::SessionSummary> load_exam(const fs::path& session) {
   TROCAR_TRY(storage::SessionSummary summary, storage::load_summary(session));
   const std::string& level = summary.info.level;
-  if (level != learning::to_string(learning::Level::kExam))
+  if (level != learning::to_string(learning::TrainingMode::kExam))
     return fail_usage(level.empty() ? "the session is no exam: it has no level of help"
                                     : fmt::format("the session is no exam: its level is {}", level),
                       session.string(), "name a session of the trainer at the level exam");

@@ -57,7 +57,7 @@ struct Curriculum {
 struct Exercise {
   std::string task, patient;
   int difficulty = 1;
-  Level level = Level::kGuided;
+  TrainingMode level = TrainingMode::kGuided;
 
   bool operator==(const Exercise&) const = default;
 };

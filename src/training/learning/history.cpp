@@ -76,7 +76,7 @@ Result<PastAttempt> attempt_of(const storage::SessionSummary& session) {
   const storage::SessionInfo& info = session.info;
   const auto when = parse_utc(info.started_utc);
   if (!when) return fail("the session has no time of its begin", {}, "record it again");
-  PastAttempt attempt{info.task, info.patient_source, info.patient_seed, find_level(info.level), *when};
+  PastAttempt attempt{info.task, info.patient_source, info.patient_seed, find_training_mode(info.level), *when};
   attempt.ending = ending_of(session);
   if (attempt.ending != Ending::kScored) return attempt;
   attempt.score = std::clamp(session.outcome->score, 0.0, 100.0);

@@ -35,7 +35,7 @@ struct CourseProgress {
     const auto found = std::find_if(steps.begin(), steps.end(), [](const StepProgress& s) { return !s.is_mastered; });
     return found == steps.end() ? nullptr : &*found;
   }
-  const StepProgress* find(const std::string& patient, Level level) const {
+  const StepProgress* find(const std::string& patient, TrainingMode level) const {
     const auto found = std::find_if(steps.begin(), steps.end(), [&](const StepProgress& s) {
       return s.exercise.patient == patient && s.exercise.level == level;
     });
@@ -197,10 +197,10 @@ class Advisor {
     Proposal proposal{&course, &step, Purpose::kNextStep, step.exercise};
     if (can_test_out(course, step)) {
       proposal.purpose = Purpose::kTestOut;
-      proposal.exercise.level = Level::kExam;
+      proposal.exercise.level = TrainingMode::kExam;
     } else if (needs_help(course, step)) {
       proposal.purpose = Purpose::kMoreHelp;
-      proposal.exercise.level = static_cast<Level>(static_cast<int>(step.exercise.level) - 1);
+      proposal.exercise.level = static_cast<TrainingMode>(static_cast<int>(step.exercise.level) - 1);
     }
     return proposal;
   }
@@ -208,8 +208,8 @@ class Advisor {
   /// A new case, and the case before it was mastered at the exam without a failure.
   bool can_test_out(const CourseProgress& course, const StepProgress& step) const {
     const auto at = static_cast<std::size_t>(&step - course.steps.data());
-    if (at == 0 || step.exercise.level != Level::kGuided) return false;
-    for (const Level level : kLevels)
+    if (at == 0 || step.exercise.level != TrainingMode::kGuided) return false;
+    for (const TrainingMode level : kTrainingModes)
       if (course.find(step.exercise.patient, level)->attempts > 0) return false;
     const StepProgress& before = course.steps[at - 1];
     return before.is_mastered && before.attempts > 0 && before.passes_in_a_row == before.attempts;
@@ -217,10 +217,10 @@ class Advisor {
 
   /// A weak part, the last attempt at the step failed, and there were not yet enough attempts with more help since.
   bool needs_help(const CourseProgress& course, const StepProgress& step) const {
-    if (!is_weak_in(*course.course) || step.exercise.level == Level::kGuided || step.attempts == 0) return false;
+    if (!is_weak_in(*course.course) || step.exercise.level == TrainingMode::kGuided || step.attempts == 0) return false;
     if (step.passes_in_a_row > 0) return false;
     Exercise helped = step.exercise;
-    helped.level = static_cast<Level>(static_cast<int>(helped.level) - 1);
+    helped.level = static_cast<TrainingMode>(static_cast<int>(helped.level) - 1);
     int count = 0;
     for (auto attempt = history_.rbegin(); attempt != history_.rend(); ++attempt) {
       if (!attempt->is_practice()) continue;
@@ -247,7 +247,7 @@ class Advisor {
       const std::size_t last = last_practised(step.exercise);
       const bool is_recent = last > 0 && history_.size() - last < static_cast<std::size_t>(rules_.plateau_rest);
       const std::size_t order = !step.repetition ? 1 + static_cast<std::size_t>(step.exercise.level)
-                                : is_recent      ? 1 + kLevels.size()
+                                : is_recent      ? 1 + kTrainingModes.size()
                                                  : 0;
       return std::tuple(order, last, step.exercise.difficulty);
     };
@@ -309,7 +309,7 @@ class Advisor {
           fmt::format("Begin with the easiest case and full help; it is mastered with {}, or with a pass of at least "
                       "{:.0f} points at the first attempt.",
                       goal_text(), rules_.first_score));
-    } else if (step.exercise.level != Level::kGuided) {
+    } else if (step.exercise.level != TrainingMode::kGuided) {
       result_.reasons.push_back(fmt::format("You have mastered case {} {}: take the next step with less help.",
                                             step.exercise.difficulty, to_string(chosen.steps[at - 1].exercise.level)));
     } else {

@@ -29,7 +29,7 @@ struct Recommendation {
   Purpose purpose = Purpose::kNothing;
   std::optional<Exercise> exercise;  ///< Empty with kNothing, and if there is no other one with kSeeInstructor.
   std::vector<std::string> reasons;  ///< Plain sentences, the most important first; at least one.
-  std::vector<std::string> notes;    ///< Doubts about the history: attempts dated after `now`.
+  std::vector<std::string> notes;    ///< Findings about the history: attempts dated after `now`.
 };
 
 /// Decides by mastery, spaced repetition and the part of the score that costs the most points, in this order:

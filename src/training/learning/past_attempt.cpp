@@ -6,13 +6,13 @@
 
 namespace trocar::learning {
 
-const char* to_string(Level level) noexcept {
+const char* to_string(TrainingMode level) noexcept {
   constexpr std::array kNames{"guided", "assisted", "exam"};
   return kNames[static_cast<std::size_t>(level)];
 }
 
-std::optional<Level> find_level(std::string_view name) noexcept {
-  for (const Level level : kLevels)
+std::optional<TrainingMode> find_training_mode(std::string_view name) noexcept {
+  for (const TrainingMode level : kTrainingModes)
     if (name == to_string(level)) return level;
   return std::nullopt;
 }

@@ -94,7 +94,7 @@ FollowedStep follow(std::span<const PastAttempt> history, const Exercise& exerci
       follower.pass_over();
     }
   }
-  FollowedStep step{{exercise}, exercise.level == Level::kExam && follower.is_exam_passed()};
+  FollowedStep step{{exercise}, exercise.level == TrainingMode::kExam && follower.is_exam_passed()};
   step.progress.attempts = follower.attempts();
   step.progress.passes_in_a_row = follower.in_a_row();
   step.progress.repetition = follower.repetition();
@@ -110,7 +110,7 @@ void find_mastery(StepProgress& step, const std::vector<FollowedStep>& all) {
     if (other.exercise.difficulty < step.exercise.difficulty) continue;
     const bool is_covered = other.repetition && other.exercise.level >= step.exercise.level;
     is_practised = is_practised || (is_covered && !other.is_tested_out);
-    is_tested = is_tested || is_covered || (is_exam_passed && step.exercise.level < Level::kExam);
+    is_tested = is_tested || is_covered || (is_exam_passed && step.exercise.level < TrainingMode::kExam);
   }
   step.is_mastered = is_practised || is_tested;
   step.is_tested_out = is_tested && !is_practised;
@@ -134,7 +134,7 @@ std::vector<StepProgress> progress_of(std::span<const PastAttempt> history, cons
                                       const LearningRules& rules, std::chrono::sys_seconds now) {
   std::vector<FollowedStep> followed;
   for (const CourseCase& the_case : course.cases)
-    for (const Level level : kLevels)
+    for (const TrainingMode level : kTrainingModes)
       followed.push_back(follow(history, {course.task, the_case.patient, the_case.difficulty, level}, rules, now));
   std::vector<StepProgress> steps;
   for (const FollowedStep& one : followed) {

@@ -89,7 +89,7 @@ std::string patient_report(const anatomy::VirtualPatient& patient, const Patient
       "<style>{1}</style></head><body><main><h1>Check of {0}</h1><h2>Tasks</h2><ul>{2}</ul>"
       "<h2>Doubtful</h2>{3}<h2>Repaired</h2>{4}<h2>Derived structures</h2><p>{5}</p></main></body></html>",
       escape(patient.name), style_sheet(), tasks,
-      check.doubts.empty() ? "<p>nothing</p>" : finding_list(patient, check.doubts),
+      check.findings.empty() ? "<p>nothing</p>" : finding_list(patient, check.findings),
       patient.repairs.empty() ? "<p>nothing</p>" : finding_list(patient, patient.repairs),
       derived.empty() ? "none" : derived);
 }

@@ -12,10 +12,10 @@ namespace trocar::report {
 /// labels and a ring at the place. Precondition: it has a place.
 volume::RgbImage finding_picture(const anatomy::VirtualPatient& patient, const anatomy::Finding& finding);
 
-/// The check of a patient as one self-contained HTML page: tasks, doubts and repairs, with a picture of each place.
+/// The check of a patient as one self-contained HTML page: tasks, findings and repairs, with a picture of each place.
 struct PatientCheck {
   std::vector<std::string> tasks;  ///< One line each.
-  std::vector<anatomy::Finding> doubts;
+  std::vector<anatomy::Finding> findings;
 };
 std::string patient_report(const anatomy::VirtualPatient& patient, const PatientCheck& check);
 

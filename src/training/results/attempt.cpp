@@ -34,7 +34,7 @@ State state_of(learning::Ending ending) noexcept {
 
 learning::PastAttempt past_attempt_of(const Attempt& attempt, const std::vector<Part>& parts) {
   learning::PastAttempt past{attempt.the_case.task, attempt.the_case.patient, attempt.the_case.seed,
-                             learning::find_level(attempt.level), attempt.started};
+                             learning::find_training_mode(attempt.level), attempt.started};
   past.ending = ending_of(attempt.state);
   if (past.ending != learning::Ending::kScored || !attempt.score) return past;
   past.score = std::clamp(*attempt.score, 0.0, 100.0);

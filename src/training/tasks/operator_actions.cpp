@@ -31,7 +31,7 @@ OperatorActions actions_for(const Task& task, const Needle& needle) {
 }
 
 double landmark_cover_mm(const Task& task, const anatomy::VirtualPatient& patient, const Segment& path_P) {
-  if (task.guidance != Guidance::kPalpation && !task.landmark_zone) return 0.0;
+  if (task.guidance != ImagingModality::kPalpation && !task.landmark_zone) return 0.0;
   std::array<bool, 256> is_fat{}, is_body{};
   for (const anatomy::Label& label : patient.label_table.labels) {
     is_fat[label.id] = label.tissue == "adipose";

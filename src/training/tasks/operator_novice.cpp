@@ -133,7 +133,7 @@ class Novice final : public Operator {
     kWithdraw,
     kDone
   };
-  struct Doubt {
+  struct Hesitation {
     double depth_mm;
     double pause_s;
     double pullback_mm;
@@ -163,11 +163,11 @@ class Novice final : public Operator {
     rhythm_rad_s_ = 2.0 * std::numbers::pi * draw(random, kRhythm_hz);
     before_fire_s_ = draw(random, kBeforeFire_s);
     double depth = 0.0;
-    for (Doubt& doubt : doubts_) {
+    for (Hesitation& hesitation : hesitations_) {
       depth += random.uniform(0.15, 0.45);
       const double pause_s = share_ * draw(random, kHesitation_s);
-      doubt = {depth * length_mm, pause_s,
-               random.uniform() < kPullbackChance * share_ ? draw(random, kPullback_mm) : 0.0};
+      hesitation = {depth * length_mm, pause_s,
+                    random.uniform() < kPullbackChance * share_ ? draw(random, kPullback_mm) : 0.0};
     }
   }
 
@@ -180,11 +180,11 @@ class Novice final : public Operator {
         if (hand_.tip_mm() < start_mm_ + 2.0) correct();
         return -withdraw_mm_s();
       case Step::kHesitate:
-        if (in_step_s() > doubts_[next_doubt_].pause_s) enter(Step::kPullBack);
+        if (in_step_s() > hesitations_[next_hesitation_].pause_s) enter(Step::kPullBack);
         return 0.0;
       case Step::kPullBack:
-        if (in_step_s() * kPullback_mm_s > doubts_[next_doubt_].pullback_mm) {
-          ++next_doubt_;
+        if (in_step_s() * kPullback_mm_s > hesitations_[next_hesitation_].pullback_mm) {
+          ++next_hesitation_;
           enter(Step::kAdvance);
         }
         return -kPullback_mm_s;
@@ -226,7 +226,7 @@ class Novice final : public Operator {
 
   double advance() noexcept {
     const double last_mm = looks_ ? kLastLookShare * stop_mm_ : stop_mm_;
-    if (next_doubt_ < doubts_.size() && hand_.tip_mm() > doubts_[next_doubt_].depth_mm) {
+    if (next_hesitation_ < hesitations_.size() && hand_.tip_mm() > hesitations_[next_hesitation_].depth_mm) {
       enter(Step::kHesitate);
     } else if (is_stuck(kNoviceStuck_s) || hand_.elapsed_s() > kStop_s) {
       enter(Step::kAim);
@@ -290,8 +290,8 @@ class Novice final : public Operator {
   double speed_mm_s_ = 0.0;
   double rhythm_rad_s_ = 0.0;
   double before_fire_s_ = 0.0;
-  std::array<Doubt, 3> doubts_{};
-  std::size_t next_doubt_ = 0;
+  std::array<Hesitation, 3> hesitations_{};
+  std::size_t next_hesitation_ = 0;
   int corrections_left_ = kCorrections;
   Step step_ = Step::kAdvance;
   double step_start_s_ = 0.0;

@@ -95,13 +95,13 @@ std::string lacks_organ(const Task& task, const anatomy::VirtualPatient& patient
 
 }  // namespace
 
-const char* to_string(Guidance guidance) noexcept {
+const char* to_string(ImagingModality guidance) noexcept {
   switch (guidance) {
-    case Guidance::kUltrasound:
+    case ImagingModality::kUltrasound:
       return "ultrasound";
-    case Guidance::kXray:
+    case ImagingModality::kXray:
       return "xray";
-    case Guidance::kPalpation:
+    case ImagingModality::kPalpation:
       return "palpation";
   }
   return "";

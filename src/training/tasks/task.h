@@ -70,7 +70,7 @@ struct BevelRule {
 };
 
 /// A level of difficulty of a task.
-struct Level {
+struct Tier {
   std::string name;              ///< "hard"
   std::string title;             ///< One line: what is harder.
   double breathing_mm = 0.0;     ///< Amplitude of the breathing. Data; acts once patients breathe. Range 0..40.
@@ -80,12 +80,12 @@ struct Level {
   /// Factors on numbers of an embedded patient's body (data/phantoms/cases.toml): "weight_kg" 1.3. Range 0.2..5.
   std::map<std::string, double, std::less<>> body;
 
-  bool operator==(const Level&) const = default;
+  bool operator==(const Tier&) const = default;
 };
 
 /// By which image the needle is guided.
-enum class Guidance : std::uint8_t { kUltrasound, kXray, kPalpation };
-const char* to_string(Guidance guidance) noexcept;
+enum class ImagingModality : std::uint8_t { kUltrasound, kXray, kPalpation };
+const char* to_string(ImagingModality guidance) noexcept;
 
 /// What hurts the patient.
 struct PainRules {
@@ -108,7 +108,7 @@ struct Task {
   std::string needle;                       ///< Name in data/needles.toml.
   std::vector<std::string> needles;         ///< Others that may be chosen; empty: all of the same use.
   std::size_t cores = 1;                    ///< Cores that a biopsy takes. Range 1..10.
-  Guidance guidance = Guidance::kUltrasound;
+  ImagingModality guidance = ImagingModality::kUltrasound;
   /// What has to come back for the target to count as reached; kNothing: nothing.
   Substance confirmed_by = Substance::kNothing;
   std::vector<Phase> phases;  ///< Steps of the procedure, in the file's order.
@@ -147,8 +147,8 @@ struct Task {
   std::optional<LandmarkZone> landmark_zone;
   std::optional<EntryLevel> highest_entry;
   std::optional<BevelRule> bevel;
-  std::vector<Level> levels;  ///< The easiest first.
-  std::string level;          ///< Name of the level whose numbers the task has; empty: its own.
+  std::vector<Tier> levels;  ///< The easiest first.
+  std::string level;         ///< Name of the level whose numbers the task has; empty: its own.
   // Scoring: deviation at which a part gives half its points, and time at which it gives none.
   double target_tolerance_mm = 5.0;
   double entry_tolerance_mm = 10.0;
@@ -185,7 +185,7 @@ std::string task_to_toml(const Task& task, const Task& base);
 /// (exit status 2): an unknown one, the message lists them; the task has a level already.
 Result<Task> at_level(Task task, std::string_view name_or_number);
 /// The level that a task has; nullptr: none.
-const Level* level_of(const Task& task) noexcept;
+const Tier* level_of(const Task& task) noexcept;
 
 /// True if a label is the task's organ or target; its risk structure in the task (nullptr: none). A risk that is named
 /// by its tissue excludes organ and target: a biopsy of the pancreas can have "organ" as a risk.
@@ -215,7 +215,7 @@ struct TaskReadiness {
   bool is_parenchymal = false;  ///< No lesion: the target is in the organ's healthy tissue.
   /// In which the task is done, if the patient lies otherwise in the scan; found by check_task_and_paths.
   std::optional<anatomy::Posture> posture;
-  std::vector<std::string> reasons;  ///< Reasons why it is not possible, or doubts.
+  std::vector<std::string> reasons;  ///< Reasons why it is not possible, or findings.
 };
 TaskReadiness check_task(const Task& task, const anatomy::VirtualPatient& patient);
 

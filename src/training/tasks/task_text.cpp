@@ -16,7 +16,7 @@ namespace trocar::tasks {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array kGuidances{Guidance::kUltrasound, Guidance::kXray, Guidance::kPalpation};
+constexpr std::array kGuidances{ImagingModality::kUltrasound, ImagingModality::kXray, ImagingModality::kPalpation};
 
 /// Reads the keys of a task file. A complete task must have them all; one with a base has the differing ones.
 class TaskReader {
@@ -166,7 +166,7 @@ class TaskReader {
     if (document_.has("guidance")) {
       TROCAR_TRY(const std::string name, document_.string("guidance"));
       const auto found = std::find_if(kGuidances.begin(), kGuidances.end(),
-                                      [&](Guidance guidance) { return name == to_string(guidance); });
+                                      [&](ImagingModality guidance) { return name == to_string(guidance); });
       if (found == kGuidances.end())
         return fail(fmt::format("there is no guidance \"{}\"", name), document_.where(),
                     "write ultrasound, xray or palpation");

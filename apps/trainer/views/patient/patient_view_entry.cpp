@@ -38,8 +38,8 @@ class PatientViewEntry final : public View {
     return has_patient_;
   }
 
-  void show_help(Difficulty difficulty) override {
-    view_->set_guidance(guidance_of(difficulty));
+  void show_help(TrainingMode mode) override {
+    view_->set_guidance(guidance_of(mode));
     view_->set_guidance_visible(true);
   }
 

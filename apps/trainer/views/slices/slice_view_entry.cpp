@@ -30,7 +30,7 @@ class SliceViewEntry final : public View {
     return true;
   }
 
-  void show_help(Difficulty difficulty) override { view_->set_guidance(guidance_of(difficulty)); }
+  void show_help(TrainingMode mode) override { view_->set_guidance(guidance_of(mode)); }
 
   void show_expert_paths(const ExpertPaths& paths) override { view_->set_paths(paths.path_P, paths.others_P); }
 

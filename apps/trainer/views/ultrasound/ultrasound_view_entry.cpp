@@ -46,9 +46,9 @@ class UltrasoundViewEntry final : public View {
     return true;
   }
 
-  void show_help(Difficulty difficulty) override {
-    view_->set_guide_offered(difficulty != Difficulty::kExam);
-    view_->set_guide_visible(guidance_of(difficulty) == scene::Guidance::kPath);
+  void show_help(TrainingMode mode) override {
+    view_->set_guide_offered(mode != TrainingMode::kExam);
+    view_->set_guide_visible(guidance_of(mode) == scene::Guidance::kPath);
   }
 
   void show_tools(const ToolContext& context) override {

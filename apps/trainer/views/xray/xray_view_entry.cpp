@@ -43,7 +43,7 @@ class XrayViewEntry final : public View {
 
   bool open(const CaseContext& context) override {
     const cases::OpenCase& open = *context.open;
-    is_needed_ = open.the_case.task.guidance == tasks::Guidance::kXray;
+    is_needed_ = open.the_case.task.guidance == tasks::ImagingModality::kXray;
     view_->show_patient(open.the_case.patient, open.the_case.needle,
                         [open = context.open] { return begin_at_P(*open); });
     return true;

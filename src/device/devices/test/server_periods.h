@@ -6,7 +6,7 @@
 
 #include "core/files/data_dir.h"
 #include "devices/simulated/virtual_haptic_device.h"
-#include "haptics/closed_loop/closed_loop.h"
+#include "haptics/closed_loop/virtual_stylus.h"
 
 namespace trocar::testing {
 

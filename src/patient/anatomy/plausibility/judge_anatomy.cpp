@@ -54,9 +54,9 @@ void judge_hu(const VirtualPatient& patient, std::vector<AnatomyFinding>& findin
          fmt::format("give the segmentation of this CT; --confirm {} if it is right", kOtherCt)});
     return;
   }
-  const std::vector<Finding> doubts = find_implausible_hu(patient, statistics);
-  std::vector<std::string> texts = texts_of(doubts, kMostNamed);
-  if (doubts.size() > kMostNamed) texts.push_back(fmt::format("and {} more", doubts.size() - kMostNamed));
+  const std::vector<Finding> findings = find_implausible_hu(patient, statistics);
+  std::vector<std::string> texts = texts_of(findings, kMostNamed);
+  if (findings.size() > kMostNamed) texts.push_back(fmt::format("and {} more", findings.size() - kMostNamed));
   if (!texts.empty())
     findings.push_back({kHu, fmt::format("{}", fmt::join(texts, "; ")), "check the segmentation", false});
 }

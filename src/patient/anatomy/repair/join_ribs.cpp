@@ -15,7 +15,7 @@ namespace trocar::anatomy::detail {
 namespace {
 
 // TotalSegmentator leaves out the part of a rib next to its vertebra (its issues 29 and 436). Assumed lengths.
-constexpr double kLongestJoinMm = 20.0;  // a longer gap is only a doubt
+constexpr double kLongestJoinMm = 20.0;  // a longer gap is only a finding
 constexpr double kLongestPieceGapMm = 15.0;
 constexpr double kSearchMm = 40.0;
 constexpr double kRibRadiusMm = 3.5;

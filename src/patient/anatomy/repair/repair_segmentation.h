@@ -15,6 +15,6 @@ std::vector<Finding> repair_segmentation(const volume::CtGrid& ct, volume::Label
 /// What looks like an error of the segmentation and is not repaired: a vertebra much larger or smaller than its
 /// neighbours, vertebrae out of order, a structure in several large parts, a rib that ends before the spine, left and
 /// right exchanged in the whole image.
-std::vector<Finding> find_segmentation_doubts(const VirtualPatient& patient);
+std::vector<Finding> segmentation_findings(const VirtualPatient& patient);
 
 }  // namespace trocar::anatomy

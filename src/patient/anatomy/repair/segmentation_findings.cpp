@@ -27,9 +27,9 @@ bool touches_border(const IndexBox& box, const volume::GridGeometry& g) {
   return false;
 }
 
-class DoubtFinder {
+class FindingCollector {
  public:
-  explicit DoubtFinder(const VirtualPatient& patient)
+  explicit FindingCollector(const VirtualPatient& patient)
       : patient_(patient), table_(patient.label_table), boxes_(find_label_boxes(patient.labels)) {}
 
   std::vector<Finding> find() {
@@ -37,7 +37,7 @@ class DoubtFinder {
     check_vertebrae();
     check_parts();
     check_ribs();
-    return std::move(doubts_);
+    return std::move(findings_);
   }
 
  private:
@@ -49,10 +49,10 @@ class DoubtFinder {
   void check_sides() {
     const SideCount sides = count_sides(patient_.labels, table_);
     if (sides.is_mirrored())
-      doubts_.push_back({fmt::format("left and right are exchanged in {} of {} pairs: the image may be mirrored",
-                                     sides.wrong, sides.wrong + sides.right),
-                         {},
-                         {}});
+      findings_.push_back({fmt::format("left and right are exchanged in {} of {} pairs: the image may be mirrored",
+                                       sides.wrong, sides.wrong + sides.right),
+                           {},
+                           {}});
   }
 
   void check_vertebrae() {
@@ -68,9 +68,9 @@ class DoubtFinder {
       const double down_mm = middles[n - 1].z() - middles[n].z();
       const std::string &upper = table_.find(order[n - 1])->name, &lower = table_.find(order[n])->name;
       if (down_mm <= 0.0)
-        doubts_.push_back({fmt::format("{} lies above {}", lower, upper), lower, middles[n]});
+        findings_.push_back({fmt::format("{} lies above {}", lower, upper), lower, middles[n]});
       else if (places == 1 && spine.place[order[n]] < kS1 && (down_mm < kLeastStepMm || down_mm > kLargestStepMm))
-        doubts_.push_back({fmt::format("{} is {:.0f} mm below {}", lower, down_mm, upper), lower, middles[n]});
+        findings_.push_back({fmt::format("{} is {:.0f} mm below {}", lower, down_mm, upper), lower, middles[n]});
     }
   }
 
@@ -88,9 +88,10 @@ class DoubtFinder {
     if (count == 0.0 || touches_border(boxes_.box[order[n]], g) || vertebra_place(label.name) >= kS1) return;
     const double ratio = static_cast<double>(boxes_.voxels[order[n]]) * count / sum;
     if (ratio <= kLargestRatio && ratio >= kSmallestRatio) return;
-    doubts_.push_back({fmt::format("{} has {:.0f} % of the volume of its neighbours: labels of vertebrae may be mixed",
-                                   label.name, 100.0 * ratio),
-                       label.name, middle_P});
+    findings_.push_back(
+        {fmt::format("{} has {:.0f} % of the volume of its neighbours: labels of vertebrae may be mixed", label.name,
+                     100.0 * ratio),
+         label.name, middle_P});
   }
 
   void check_parts() {
@@ -100,7 +101,7 @@ class DoubtFinder {
       if (parts.count() < 2) continue;
       const double least_ml = std::min(kSecondPartMl, kSecondPartShare * parts.volume_ml(0));
       if (parts.volume_ml(1) < least_ml) continue;
-      doubts_.push_back(
+      findings_.push_back(
           {fmt::format("{} has {} parts, the second of {:.1f} ml", label.name, parts.count(), parts.volume_ml(1)),
            label.name, patient_.labels.geometry.centre_mm(parts.middle[1])});
     }
@@ -110,23 +111,23 @@ class DoubtFinder {
     const volume::GridGeometry& g = patient_.labels.geometry;
     for (const RibGap& gap : find_rib_gaps(patient_.labels, table_, boxes_)) {
       if (touches_border(boxes_.box[gap.rib], g) || touches_border(boxes_.box[gap.vertebra], g)) continue;
-      doubts_.push_back({fmt::format("{} ends {:.0f} mm from {}", table_.find(gap.rib)->name, gap.length_mm,
-                                     table_.find(gap.vertebra)->name),
-                         table_.find(gap.rib)->name, g.centre_mm(gap.from)});
+      findings_.push_back({fmt::format("{} ends {:.0f} mm from {}", table_.find(gap.rib)->name, gap.length_mm,
+                                       table_.find(gap.vertebra)->name),
+                           table_.find(gap.rib)->name, g.centre_mm(gap.from)});
     }
   }
 
   const VirtualPatient& patient_;
   const LabelTable& table_;
   LabelBoxes boxes_;
-  std::vector<Finding> doubts_;
+  std::vector<Finding> findings_;
 };
 
 }  // namespace
 }  // namespace detail
 
-std::vector<Finding> find_segmentation_doubts(const VirtualPatient& patient) {
-  return detail::DoubtFinder(patient).find();
+std::vector<Finding> segmentation_findings(const VirtualPatient& patient) {
+  return detail::FindingCollector(patient).find();
 }
 
 }  // namespace trocar::anatomy

@@ -34,8 +34,8 @@ constexpr std::array kRanges{HuRange{"bone", 90, 3100, 0.3, kAny},
                              HuRange{"ligamentum_flavum", -60, 250, 0.2, 0.4}};
 constexpr double kSmallestJudged_ml = 1.0;
 
-std::string doubt_text(const std::string& name, const LabelStatistics& s, const HuRange& range, double margin_hu,
-                       double margin_share) {
+std::string finding_text(const std::string& name, const LabelStatistics& s, const HuRange& range, double margin_hu,
+                         double margin_share) {
   if (s.gas_share > range.most_gas + margin_share)
     return fmt::format("{}: {:.0f} % of it is gas", name, 100.0 * s.gas_share);
   if (s.bone_share > range.most_bone + margin_share)
@@ -49,7 +49,7 @@ std::string doubt_text(const std::string& name, const LabelStatistics& s, const 
 
 std::vector<Finding> find_implausible_hu(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics,
                                          std::size_t* judged_count, const HuMargin& margin) {
-  std::vector<Finding> doubts;
+  std::vector<Finding> findings;
   std::size_t judged = 0;
   for (const LabelStatistics& s : statistics) {
     const Label* label = patient.label_table.find(s.id);
@@ -58,11 +58,11 @@ std::vector<Finding> find_implausible_hu(const VirtualPatient& patient, const st
         std::find_if(kRanges.begin(), kRanges.end(), [&](const HuRange& r) { return r.tissue == label->tissue; });
     if (range == kRanges.end()) continue;
     ++judged;
-    std::string text = doubt_text(label->name, s, *range, margin.hu, margin.share);
-    if (!text.empty()) doubts.push_back({std::move(text), label->name, s.centroid_P});
+    std::string text = finding_text(label->name, s, *range, margin.hu, margin.share);
+    if (!text.empty()) findings.push_back({std::move(text), label->name, s.centroid_P});
   }
   if (judged_count != nullptr) *judged_count = judged;
-  return doubts;
+  return findings;
 }
 
 }  // namespace trocar::anatomy

@@ -117,7 +117,7 @@ Result<std::string> query_patient(const HttpRequest& request) {
 Result<std::string> query_level(const HttpRequest& request) {
   const auto level = request.find_query("level");
   if (!level || level->empty()) return std::string();
-  if (!learning::find_level(*level))
+  if (!learning::find_training_mode(*level))
     return fail_usage("not a level of help", "level", "choose guided, assisted or exam");
   return std::string(*level);
 }

@@ -53,4 +53,10 @@ struct StylusMotion {
 StylusMotion step_stylus(VirtualStylusState& state, const VirtualStylusParams& params, const StylusHold& hold,
                          const Wrench& wrench_P, const Vec3& gravity_P, double dt_s) noexcept;
 
+/// Model of the hand (physics.md H1) with rotational springs about the grip [assumed]: a pen grip of two fingers 30 mm
+/// apart. Range 50..1000 N mm/rad.
+StylusHold make_hand() noexcept;
+/// The same hand guiding the needle at its tip, `tip_mm` before S (physics.md H6).
+StylusHold make_guiding_hand(double tip_mm) noexcept;
+
 }  // namespace trocar::haptics

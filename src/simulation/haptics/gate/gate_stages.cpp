@@ -38,8 +38,8 @@ double spring_energy_mj(double wanted, double limit, double stiffness) noexcept 
 double work_mj(const Vec3& before, const Vec3& now, const Vec3& way, double count, double friction) noexcept {
   const double length = way.norm();
   if (length <= 0.0) return 0.0;
-  const double doubt = 0.5 * std::min(1.0, count / length) * (now - before).dot(way);
-  return before.dot(way) + std::clamp(doubt, -friction * length, friction * length);
+  const double uncertain = 0.5 * std::min(1.0, count / length) * (now - before).dot(way);
+  return before.dot(way) + std::clamp(uncertain, -friction * length, friction * length);
 }
 
 double damping_lever_mm(const GateParams& params) noexcept {

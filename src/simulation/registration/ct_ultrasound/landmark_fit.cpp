@@ -82,11 +82,11 @@ Result<LandmarkFit> fit_landmarks(std::span<const NamedPoint> ct, std::span<cons
   result.unmatched = pairs.unmatched;
   const double scale_error = std::abs(fit.scale - 1.0);
   if (fit.rms_mm > kDoubtful_mm || scale_error > kDoubtfulScale)
-    result.doubt =
+    result.warning =
         fmt::format("the landmarks do not fit rigidly: rms {:.1f} mm, scale {:.3f}, worst pair \"{}\" {:.1f} mm",
                     fit.rms_mm, fit.scale, result.worst, result.worst_mm);
   if (fit.rms_mm > kRefused_mm || scale_error > kRefusedScale)
-    return fail(result.doubt, "landmarks", "correct or remove that pair, or check the spacing of both volumes");
+    return fail(result.warning, "landmarks", "correct or remove that pair, or check the spacing of both volumes");
   result.fit = std::move(fit);
   return result;
 }

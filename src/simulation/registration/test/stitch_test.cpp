@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "registration/phantom/volume_series.h"
+#include "lab/registration/volume_series.h"
 
 namespace trocar::registration {
 namespace {

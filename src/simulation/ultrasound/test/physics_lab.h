@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/files/data_dir.h"
+#include "lab/ultrasound/image_statistics.h"
+#include "lab/ultrasound/speckle_statistics.h"
+#include "lab/ultrasound/test_scenes.h"
 #include "ultrasound/engine/b_mode.h"
-#include "ultrasound/figures/image_statistics.h"
-#include "ultrasound/figures/speckle_statistics.h"
-#include "ultrasound/phantom/test_scenes.h"
 
 /// Common parts of the tests of the engine's physics: shipped transducers in front of scenes with a single object.
 namespace trocar::testing {

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "ultrasound/phantom/test_scenes.h"
+#include "lab/ultrasound/test_scenes.h"
+#include "lab/volume/correlation.h"
 #include "ultrasound/sweep/mechanical_sweep.h"
-#include "volume/correlation.h"
 
 namespace trocar::testing {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "haptics/closed_loop/closed_loop.h"
+#include "haptics/closed_loop/virtual_stylus.h"
 #include "tasks/hand.h"
 #include "telemetry/tick_pose.h"
 

@@ -78,7 +78,7 @@ Result<Performer> make_named(const cases::Case& the_case, const RunOptions& opti
                            tasks::actions_for(the_case.task, the_case.needle)};
   what.bevel_P = tasks::planned_bevel_P(the_case.task, *the_case.patient, the_case.plan.line_P);
   what.cover_mm = tasks::landmark_cover_mm(the_case.task, *the_case.patient, the_case.plan.line_P);
-  if (const tasks::Level* const level = tasks::level_of(the_case.task)) what.tremor_mm = level->tremor_mm;
+  if (const tasks::Tier* const level = tasks::level_of(the_case.task)) what.tremor_mm = level->tremor_mm;
   const std::string& force_model = the_case.task.force_model;
   TROCAR_TRY(const OperatorChoice choice, parse_operator(options.operator_name));
   switch (choice.kind) {

@@ -13,8 +13,8 @@
 #include "core/files/temporary_folder.h"
 #include "io/patient/patient_panorama.h"
 #include "io/sequence/sequence_file.h"
+#include "lab/registration/generated_pair.h"
 #include "registration/ct_ultrasound/rigid_registration.h"
-#include "registration/ct_ultrasound/testing/generated_pair.h"
 #include "volume/sampling.h"
 
 namespace trocar::case_builder {

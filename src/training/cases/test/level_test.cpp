@@ -56,7 +56,7 @@ TEST(Level, BodyFactorsNameValidParameters) {
   ASSERT_TRUE(all) << all.error().text();
   for (const tasks::Task& task : *all) {
     EXPECT_GE(task.levels.size(), 3U) << task.name;
-    for (const tasks::Level& level : task.levels) {
+    for (const tasks::Tier& level : task.levels) {
       if (level.body.empty()) continue;
       const std::string source = with_body("lumbar-1", level);
       ASSERT_TRUE(source.starts_with("lumbar-1@")) << source;

@@ -32,13 +32,13 @@ inline std::chrono::sys_seconds day(int n) {
   return std::chrono::sys_days(std::chrono::year(2026) / 3 / 1) + std::chrono::days(n) + 12h;
 }
 
-inline learning::PastAttempt attempt(const std::string& patient, learning::Level level, int on_day, double score = 90.0,
-                                     bool is_passed = true) {
+inline learning::PastAttempt attempt(const std::string& patient, learning::TrainingMode level, int on_day,
+                                     double score = 90.0, bool is_passed = true) {
   return {patient.substr(0, patient.find('-')), patient, 1, level, day(on_day), score, is_passed, {}};
 }
 
 /// An attempt that ended in the body without a score.
-inline learning::PastAttempt unscored(const std::string& patient, learning::Level level, int on_day) {
+inline learning::PastAttempt unscored(const std::string& patient, learning::TrainingMode level, int on_day) {
   learning::PastAttempt one = attempt(patient, level, on_day);
   one.score.reset();
   one.is_passed = false;
@@ -53,7 +53,7 @@ inline void add(std::vector<learning::PastAttempt>& history, int count, const le
 
 /// All three levels of a case mastered on a day.
 inline void master(std::vector<learning::PastAttempt>& history, const std::string& patient, int on_day) {
-  for (const learning::Level level : learning::kLevels) add(history, 3, attempt(patient, level, on_day));
+  for (const learning::TrainingMode level : learning::kTrainingModes) add(history, 3, attempt(patient, level, on_day));
 }
 
 }  // namespace trocar::testing

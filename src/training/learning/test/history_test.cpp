@@ -43,7 +43,7 @@ TEST(History, ReadsAnAttemptFromASession) {
   EXPECT_EQ(attempt->task, "liver-biopsy");
   EXPECT_EQ(attempt->patient, "biopsy-2");
   EXPECT_EQ(attempt->patient_seed, 7u);
-  EXPECT_EQ(attempt->level, Level::kAssisted);
+  EXPECT_EQ(attempt->level, TrainingMode::kAssisted);
   EXPECT_EQ(attempt->when.time_since_epoch().count(), 1772323198);  // date -u -d 2026-02-28T23:59:58Z +%s
   EXPECT_EQ(attempt->score, 88.5);
   EXPECT_TRUE(attempt->is_passed);

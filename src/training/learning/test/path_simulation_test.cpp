@@ -55,7 +55,7 @@ TEST(PathSimulation, SmallWeakPartDoesNotDelayATrainee) {
 TEST(PathSimulation, FastLearnerFinishesQuickly) {
   const Curriculum curriculum = real_curriculum();
   std::size_t steps = 0;
-  for (const Course& course : curriculum.courses) steps += course.cases.size() * kLevels.size();
+  for (const Course& course : curriculum.courses) steps += course.cases.size() * kTrainingModes.size();
   const LearningRun run = follow(model("fast learner"), curriculum, 300);
   EXPECT_TRUE(run.is_through);
   EXPECT_LT(run.history.size(), 2 * steps);  // repetitions included; three passes of each step alone are 3 * steps

@@ -16,7 +16,7 @@ constexpr std::array kStructureValues{
                       {Role::kPatient},
                       "paper B, evaluation component"},
 };
-constexpr double kFarthest_mm = 500.0;  // a longer step is a jump of the recording
+constexpr double kFarthestStep_mm = 500.0;  // a longer step is a jump of the recording
 
 class Structures : public Metric {
  public:
@@ -28,7 +28,7 @@ class Structures : public Metric {
     if (step.before == nullptr) return;
     const Vec3 way_P = step.now.tip_A() - step.before->tip_A();
     const double length_mm = way_P.norm();
-    if (length_mm <= detail::kTestedEvery_mm || length_mm > kFarthest_mm) return;
+    if (length_mm <= detail::kTestedEvery_mm || length_mm > kFarthestStep_mm) return;
     const int steps = static_cast<int>(length_mm / detail::kTestedEvery_mm) + 1;
     for (int n = 1; n < steps; ++n)
       note(volume::sample_nearest<std::uint8_t>(patient_.labels, step.before->tip_A() + way_P * n / steps, 0));

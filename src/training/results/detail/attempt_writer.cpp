@@ -56,7 +56,7 @@ Status check_storable(const Attempt& attempt) {
                      attempt.id.find_first_not_of("0123456789abcdef") == std::string::npos;
   if (!is_id) return fail("the attempt has no valid key", "attempt", "record it again");
   if (attempt.the_case.task.empty()) return fail("the task is empty", "task", "name the task");
-  if (!attempt.level.empty() && !learning::find_level(attempt.level))
+  if (!attempt.level.empty() && !learning::find_training_mode(attempt.level))
     return fail("the level is unknown", "level", "use guided, assisted or exam, or leave it empty");
   const std::pair<const char*, const std::string&> texts[]{{"task", attempt.the_case.task},
                                                            {"patient", attempt.the_case.patient},

@@ -41,7 +41,7 @@ struct HintSubject {
 };
 
 /// What the trainee finds a place by: "find it in the image", "by the landmarks".
-const char* found_by(tasks::Guidance guidance) noexcept;
+const char* found_by(tasks::ImagingModality guidance) noexcept;
 /// "the heart" -> "The heart".
 std::string as_sentence(std::string text);
 

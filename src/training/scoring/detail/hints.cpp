@@ -75,13 +75,13 @@ std::string HintSubject::bone_of_stylet() const {
   return {};
 }
 
-const char* found_by(tasks::Guidance guidance) noexcept {
+const char* found_by(tasks::ImagingModality guidance) noexcept {
   switch (guidance) {
-    case tasks::Guidance::kUltrasound:
+    case tasks::ImagingModality::kUltrasound:
       return "in the ultrasound image";
-    case tasks::Guidance::kXray:
+    case tasks::ImagingModality::kXray:
       return "in the X-ray image";
-    case tasks::Guidance::kPalpation:
+    case tasks::ImagingModality::kPalpation:
       return "by the landmarks";
   }
   return "";

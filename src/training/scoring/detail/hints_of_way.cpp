@@ -16,13 +16,13 @@ constexpr double kNoRoom_mm = 0.5;        // a distance that would be written as
 constexpr double kRepeatedTravel = 0.25;  // share of the excess travel for a hint about retractions
 
 /// What keeps a needle clear of a structure, by what guides it.
-const char* how_to_avoid(tasks::Guidance guidance) noexcept {
+const char* how_to_avoid(tasks::ImagingModality guidance) noexcept {
   switch (guidance) {
-    case tasks::Guidance::kUltrasound:
+    case tasks::ImagingModality::kUltrasound:
       return "find it in the image before you insert the needle, and keep clear of it";
-    case tasks::Guidance::kXray:
+    case tasks::ImagingModality::kXray:
       return "choose an entry and a direction that pass beside it, and check them in the X-ray image";
-    case tasks::Guidance::kPalpation:
+    case tasks::ImagingModality::kPalpation:
       return "feel the landmarks again, and keep to the planned entry, direction and depth";
   }
   return "";
@@ -180,7 +180,7 @@ std::string travel_hint(const HintSubject& subject, bool is_depth_told) {
   const double repeated_mm = measured.travel_mm - measured.deepest_mm;
   if (repeated_mm < kRepeatedTravel * (measured.travel_mm - path_mm)) {
     if (is_depth_told) return {};
-    const bool has_image = subject.task().guidance != tasks::Guidance::kPalpation;
+    const bool has_image = subject.task().guidance != tasks::ImagingModality::kPalpation;
     return fmt::format("The needle went {:.0f} mm deep for a path of {:.0f} mm: {} and stop at the target.",
                        measured.deepest_mm, path_mm, has_image ? "follow the tip in the image" : "watch the depth");
   }

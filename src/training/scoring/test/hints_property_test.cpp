@@ -49,7 +49,7 @@ class DrawnAttempt {
     for (std::size_t n = draw_.chance(0.2) ? 0 : 1 + draw_.index(4); n > 0 && subject.needle.is_biopsy; --n)
       shots_.push_back(0);
     attempt_.xray.dose_area_gycm2 = draw_.number(0.0, 12.0);
-    attempt_.has_transducer = subject.task.guidance == tasks::Guidance::kUltrasound;
+    attempt_.has_transducer = subject.task.guidance == tasks::ImagingModality::kUltrasound;
     if (attempt_.has_transducer && draw_.chance(0.9)) attempt_.tip_visible_share = draw_.number(0.0, 1.0);
     attempt_.shots = shots_;
     attempt_.actions = actions_;
@@ -178,10 +178,10 @@ std::string fault_of(const std::string& text, const Subject& subject, const Judg
   const bool has_stylet = subject.needle.stylet_diameter_mm > 0.0 || subject.needle.is_biopsy;
   if (!has_stylet && says(text, "stylet")) return "a needle without a stylet";
   if (!subject.needle.is_biopsy && (says(text, "gun") || says(text, "fire") || says(text, "core "))) return "no gun";
-  if (subject.task.guidance == tasks::Guidance::kPalpation && (says(text, "image") || says(text, "transducer")))
+  if (subject.task.guidance == tasks::ImagingModality::kPalpation && (says(text, "image") || says(text, "transducer")))
     return "no image";
-  if (subject.task.guidance != tasks::Guidance::kUltrasound && says(text, "transducer")) return "no transducer";
-  if (subject.task.guidance != tasks::Guidance::kXray && says(text, "X-ray")) return "no X-ray";
+  if (subject.task.guidance != tasks::ImagingModality::kUltrasound && says(text, "transducer")) return "no transducer";
+  if (subject.task.guidance != tasks::ImagingModality::kXray && says(text, "X-ray")) return "no X-ray";
   if (says(text, "too deep") && says(text, "advance ")) return "deeper and less deep";
   std::smatch match;
   static const std::regex kAdvance(R"(advance (\d+) mm further)");

@@ -61,10 +61,10 @@ Status read_bevel(const config::TomlTable& document, Task& task) {
   return {};
 }
 
-Result<Level> read_level(const config::TomlTable& row) {
+Result<Tier> read_level(const config::TomlTable& row) {
   TROCAR_TRY_STATUS(
       row.check_keys({"name", "title", "breathing_mm", "tremor_mm", "time_limit_s", "tolerance_share", "body"}));
-  Level level;
+  Tier level;
   TROCAR_TRY(level.name, row.string("name"));
   TROCAR_TRY(level.title, row.string("title"));
   TROCAR_TRY(level.breathing_mm, row.number_or("breathing_mm", {0.0, 40.0}, 0.0));
@@ -84,15 +84,15 @@ Status read_levels(const config::TomlTable& document, Task& task) {
   TROCAR_TRY(const std::vector<config::TomlTable> rows, document.tables("levels"));
   task.levels.clear();
   for (const config::TomlTable& row : rows) {
-    TROCAR_TRY(Level level, read_level(row));
-    if (std::ranges::find(task.levels, level.name, &Level::name) != task.levels.end())
+    TROCAR_TRY(Tier level, read_level(row));
+    if (std::ranges::find(task.levels, level.name, &Tier::name) != task.levels.end())
       return fail(fmt::format("two levels are named \"{}\"", level.name), row.where(), "give each level its own name");
     task.levels.push_back(std::move(level));
   }
   return {};
 }
 
-void write_level(config::TomlWriter& writer, const Level& level) {
+void write_level(config::TomlWriter& writer, const Tier& level) {
   writer.begin_row("levels");
   writer.set("name", level.name);
   writer.set("title", level.title);
@@ -178,7 +178,7 @@ void write_rules(config::TomlWriter& writer, const Task& task, const Task& base)
     writer.set("tolerance_deg", task.bevel->tolerance_deg);
   }
   if (task.levels != base.levels)
-    for (const Level& level : task.levels) write_level(writer, level);
+    for (const Tier& level : task.levels) write_level(writer, level);
 }
 
 }  // namespace trocar::tasks::detail

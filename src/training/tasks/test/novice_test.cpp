@@ -154,13 +154,13 @@ TEST(LandmarkCover, IsTheFatOverMuscleInALandmarkTask) {
   box.spacing_mm = 1.0;
   const anatomy::VirtualPatient patient = box.make();
   Task task;
-  task.guidance = Guidance::kPalpation;
+  task.guidance = ImagingModality::kPalpation;
   const Segment straight{{-40.0, -70.0, 0.0}, {-40.0, -10.0, 0.0}};
   EXPECT_NEAR(landmark_cover_mm(task, patient, straight), 12.0, 1.0);
   const Vec3 slanted_P = Vec3(0.0, 1.0, 1.0).normalized();
   EXPECT_NEAR(landmark_cover_mm(task, patient, {straight.a, straight.a + 60.0 * slanted_P}), 12.0 * std::sqrt(2.0),
               1.5);
-  task.guidance = Guidance::kUltrasound;
+  task.guidance = ImagingModality::kUltrasound;
   EXPECT_EQ(landmark_cover_mm(task, patient, straight), 0.0);
   task.landmark_zone.emplace();
   EXPECT_NEAR(landmark_cover_mm(task, patient, straight), 12.0, 1.0);

@@ -30,7 +30,7 @@ Task changed_task() {
   task.expert_path = "expert";
   task.exam_shows_needle = true;
   task.ultrasound_engine = "panorama";
-  task.guidance = Guidance::kXray;
+  task.guidance = ImagingModality::kXray;
   task.needles = {"biopsy-16g"};
   task.postures = {anatomy::Posture::kSitting, anatomy::Posture::kProne};
   task.posture = anatomy::Posture::kProne;

@@ -16,7 +16,7 @@ constexpr double kNestedShare = 0.95;    ///< Of the inner one: holes may be dra
 constexpr double kInsideShare = 0.995;   ///< More is rounding.
 constexpr double kTouchingShare = 1e-3;  ///< Less is rounding.
 constexpr double kThinRing = 0.8;        ///< Of the outer one: such a hole may be a second drawing.
-constexpr int kRows = 64;                ///< Lines that areas are measured on.
+constexpr int kAreaLines = 64;           ///< Lines that areas are measured on.
 constexpr int kFineRows = 256;
 
 double area_of(const Eigen::AlignedBox2d& box) {
@@ -127,7 +127,7 @@ OutlinePair relate_outlines(const FlatContour& a, const FlatContour& b, const Ei
   const bool is_similar = area_of(a.box.intersection(b.box)) > kSimilarBoxes * area_of(merged);
   const FlatContour& small = area_of(a.box) < area_of(b.box) ? a : b;
   const Areas areas = is_similar ? measure(a, b, merged.min().y(), merged.max().y(), kFineRows)
-                                 : measure(a, b, small.box.min().y(), small.box.max().y(), kRows);
+                                 : measure(a, b, small.box.min().y(), small.box.max().y(), kAreaLines);
   const double inner = is_similar ? std::min(areas.a, areas.b) : &small == &a ? areas.a : areas.b;
   pair.common_mm2 = areas.common * pixel_mm2;
   if (areas.common <= kTouchingShare * inner) return pair;

@@ -54,8 +54,8 @@ Result<std::vector<anatomy::LabelSource>> read_dicom_labels(const fs::path& path
   TROCAR_TRY(dicom::Segmentation read, dicom::read_segmentation(path, ct, is_wanted, decode_frame));
   for (const std::string& warning : read.warnings) warnings.push_back(path.filename().string() + ": " + warning);
   for (const dicom::Segment& segment : read.segments)
-    if (const std::string doubt = map.contradiction_in(description_of(segment)); !doubt.empty())
-      warnings.push_back(path.filename().string() + ": " + doubt);
+    if (const std::string contradiction = map.contradiction_in(description_of(segment)); !contradiction.empty())
+      warnings.push_back(path.filename().string() + ": " + contradiction);
 
   const std::string stem = read.segments.size() == 1 ? path.stem().string() : std::string();
   std::vector<anatomy::LabelSource> sources;

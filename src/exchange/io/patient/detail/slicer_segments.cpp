@@ -145,8 +145,8 @@ Result<std::vector<anatomy::LabelSource>> read_segments(const RawVolume& raw,
                                                         const LabelMap& map, const fs::path& path,
                                                         std::vector<std::string>& warnings) {
   for (const Segment3dSlicer& segment : segments)
-    if (const std::string doubt = map.contradiction_in(segment.description); !doubt.empty())
-      warnings.push_back(path.filename().string() + ": " + doubt);
+    if (const std::string contradiction = map.contradiction_in(segment.description); !contradiction.empty())
+      warnings.push_back(path.filename().string() + ": " + contradiction);
   const auto count = static_cast<std::size_t>(raw.components);
   const std::size_t voxel_bytes = bytes_per_voxel(raw.type);
   std::vector<anatomy::LabelSource> sources;

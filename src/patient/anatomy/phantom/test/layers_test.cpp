@@ -114,8 +114,8 @@ TEST(LayeredScene, BoneLiesBesideTheLumbarPath) {
 TEST(LayeredScene, HounsfieldUnitsFitTheLabels) {
   for (const PhantomInfo& info : layered_scenes()) {
     const VirtualPatient& patient = scene(info.name);
-    for (const Finding& doubt : find_implausible_hu(patient, label_statistics(patient)))
-      ADD_FAILURE() << info.name << ": " << doubt.text;
+    for (const Finding& finding : find_implausible_hu(patient, label_statistics(patient)))
+      ADD_FAILURE() << info.name << ": " << finding.text;
   }
   // The flavum does not show against the interspinous ligament, the dura does.
   const VirtualPatient& lumbar_patient = scene("layers-lumbar");

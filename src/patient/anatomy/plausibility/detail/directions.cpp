@@ -15,7 +15,7 @@ namespace trocar::anatomy::detail {
 namespace {
 
 /// Centroid of a group of structures and its volume.
-struct Place {
+struct GroupPlace {
   Vec3 sum_P = Vec3::Zero();
   double voxels = 0.0;
   Vec3 middle_P() const { return sum_P / voxels; }
@@ -59,13 +59,13 @@ class Places {
   }
 
   void add(const std::string& group, const LabelShape& shape) {
-    Place& place = groups_[group];
+    GroupPlace& place = groups_[group];
     place.sum_P += shape.middle_P * shape.voxels;
     place.voxels += shape.voxels;
   }
 
   double voxel_ml_;
-  std::map<std::string, Place, std::less<>> groups_;
+  std::map<std::string, GroupPlace, std::less<>> groups_;
   std::map<int, Vec3> vertebrae_;
 };
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-#include "anatomy/patient_doubts.h"
+#include "anatomy/patient_findings.h"
 
 namespace trocar::anatomy {
 namespace {
@@ -124,8 +124,9 @@ TEST(JudgeAnatomy, JudgesASavedPatient) {
   BodyOutcome built = build_body(ct_at(kMirroredHere), labels_at(kMirroredHere), {kMirrored});
   ASSERT_TRUE(built.patient) << built.text();
   const auto says_mirrored = [&] {
-    const auto doubts = find_all_doubts(*built.patient, label_statistics(*built.patient));
-    return std::ranges::any_of(doubts, [](const Finding& doubt) { return doubt.text.starts_with("mirrored: left"); });
+    const auto findings = all_patient_findings(*built.patient, label_statistics(*built.patient));
+    return std::ranges::any_of(findings,
+                               [](const Finding& finding) { return finding.text.starts_with("mirrored: left"); });
   };
   EXPECT_FALSE(says_mirrored()) << "it is confirmed";
   built.patient->provenance.clear();

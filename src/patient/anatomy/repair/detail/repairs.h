@@ -10,7 +10,7 @@ namespace trocar::anatomy::detail {
 // Each repair changes labels and table, and appends to `repairs`.
 
 /// Exchanges the names of a pair (X_left, X_right) that lie on each other's side, and relabels parts of one that lie at
-/// the other. Nothing is exchanged if nearly all pairs are: then the image is mirrored, which is only a doubt.
+/// the other. Nothing is exchanged if nearly all pairs are: then the image is mirrored, which is only a finding.
 void correct_sides(volume::LabelGrid& labels, LabelTable& table, std::vector<Finding>& repairs);
 /// The number of pairs on the right and on the wrong sides.
 struct SideCount {

@@ -27,9 +27,9 @@ std::vector<std::string> repair(LabelledBox& box) {
   return texts;
 }
 
-std::vector<std::string> doubts(const LabelledBox& box) {
+std::vector<std::string> findings(const LabelledBox& box) {
   std::vector<std::string> texts;
-  for (const Finding& finding : find_segmentation_doubts(box.patient)) texts.push_back(finding.text);
+  for (const Finding& finding : segmentation_findings(box.patient)) texts.push_back(finding.text);
   return texts;
 }
 
@@ -44,7 +44,7 @@ TEST(Repair, KeepsASoundSegmentation) {
   const auto before = box.patient.labels.voxels;
   EXPECT_EQ(repair(box), Texts{});
   EXPECT_EQ(box.patient.labels.voxels, before);
-  EXPECT_EQ(doubts(box), Texts{});
+  EXPECT_EQ(findings(box), Texts{});
 }
 
 TEST(Repair, FillsHolesAndReportsTheirVolume) {
@@ -149,7 +149,7 @@ TEST(Repair, DoesNotExchangeSidesOfAMirroredImage) {
     box.paint(std::string(name) + "_left", ball({-30.0, 0.0, z}, 5.0));
   }
   EXPECT_EQ(repair(box), Texts{});
-  EXPECT_EQ(doubts(box), Texts{"left and right are exchanged in 4 of 4 pairs: the image may be mirrored"});
+  EXPECT_EQ(findings(box), Texts{"left and right are exchanged in 4 of 4 pairs: the image may be mirrored"});
 }
 
 /// A rib along x at y = 0, from x = 10 to the left, and its vertebra around x = -15; bone in the CT in between.
@@ -168,16 +168,16 @@ TEST(Repair, JoinsARibThatEndsBeforeTheSpine) {
   EXPECT_EQ(repair(box), Texts{"joined rib_left_9 and vertebrae_T9 across a gap of 10 mm"});
   for (double x = -13.0; x <= 0.0; x += 1.0)
     EXPECT_TRUE(box.name_at({x, 0.0, 0.0}) == "rib_left_9" || box.name_at({x, 0.0, 0.0}) == "vertebrae_T9") << x;
-  EXPECT_EQ(doubts(box), Texts{});
+  EXPECT_EQ(findings(box), Texts{});
 }
 
 TEST(Repair, ReportsLongOrBonelessRibGaps) {
   LabelledBox soft = make_rib(10.0, 20);
   EXPECT_EQ(repair(soft), Texts{});
-  EXPECT_EQ(doubts(soft), Texts{"rib_left_9 ends 10 mm from vertebrae_T9"});
+  EXPECT_EQ(findings(soft), Texts{"rib_left_9 ends 10 mm from vertebrae_T9"});
   LabelledBox far = make_rib(28.0, 300);
   EXPECT_EQ(repair(far), Texts{});
-  EXPECT_EQ(doubts(far), Texts{"rib_left_9 ends 28 mm from vertebrae_T9"});
+  EXPECT_EQ(findings(far), Texts{"rib_left_9 ends 28 mm from vertebrae_T9"});
 }
 
 TEST(Repair, JoinsThePiecesOfARib) {
@@ -187,7 +187,7 @@ TEST(Repair, JoinsThePiecesOfARib) {
   EXPECT_EQ(box.name_at({12.0, 0.0, 0.0}), "rib_left_9");
 }
 
-TEST(SegmentationDoubts, NameVertebraeThatMayBeMixed) {
+TEST(SegmentationFindings, NameVertebraeThatMayBeMixed) {
   LabelledBox box = make_segmentation({61, 61, 141});
   const auto disc = [](double low, double high) {
     return [=](const Vec3& p) { return std::hypot(p.x() + 20.0, p.y()) <= 15.0 && p.z() >= low && p.z() <= high; };
@@ -196,20 +196,20 @@ TEST(SegmentationDoubts, NameVertebraeThatMayBeMixed) {
   box.paint("vertebrae_L2", disc(0.0, 45.0));  // two vertebrae in one label
   box.paint("vertebrae_L3", disc(-20.0, -4.0));
   box.paint("vertebrae_L5", disc(-45.0, -25.0));
-  const auto texts = doubts(box);
+  const auto texts = findings(box);
   ASSERT_FALSE(texts.empty());
   EXPECT_TRUE(std::any_of(texts.begin(), texts.end(), [](const std::string& text) {
     return text.starts_with("vertebrae_L2 has 2") && text.find("labels of vertebrae may be mixed") != std::string::npos;
   })) << texts.front();
 }
 
-TEST(SegmentationDoubts, NameMisorderedVertebraeAndSplitStructures) {
+TEST(SegmentationFindings, NameMisorderedVertebraeAndSplitStructures) {
   LabelledBox box = make_segmentation();
   box.paint("vertebrae_L2", ball({-30.0, 0.0, -25.0}, 10.0));
   box.paint("vertebrae_L3", ball({-30.0, 0.0, 25.0}, 10.0));
   box.paint("spleen", ball({20.0, 0.0, 25.0}, 12.0));
   box.paint("spleen", ball({20.0, 0.0, -25.0}, 11.0));
-  EXPECT_EQ(doubts(box), (Texts{"vertebrae_L3 lies above vertebrae_L2", "spleen has 2 parts, the second of 5.6 ml"}));
+  EXPECT_EQ(findings(box), (Texts{"vertebrae_L3 lies above vertebrae_L2", "spleen has 2 parts, the second of 5.6 ml"}));
 }
 
 }  // namespace

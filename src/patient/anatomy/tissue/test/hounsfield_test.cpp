@@ -21,40 +21,40 @@ volume::CtGrid changed_ct(auto change) {
   return ct;
 }
 
-std::string doubt(const volume::CtGrid& ct) {
+std::string finding(const volume::CtGrid& ct) {
   const Status status = check_hounsfield(ct);
   return status ? "believed" : status.error().text();
 }
 
 TEST(Hounsfield, AcceptsACt) {
-  EXPECT_EQ(doubt(torso_ct()), "believed");
+  EXPECT_EQ(finding(torso_ct()), "believed");
   // Padding outside of the field of view, and contrast agent in much of the body.
-  EXPECT_EQ(doubt(changed_ct([](int hu) { return hu == Torso::kAir ? -3024 : hu; })), "believed");
-  EXPECT_EQ(doubt(changed_ct([](int hu) { return hu == Torso::kMuscle ? 180 : hu; })), "believed");
+  EXPECT_EQ(finding(changed_ct([](int hu) { return hu == Torso::kAir ? -3024 : hu; })), "believed");
+  EXPECT_EQ(finding(changed_ct([](int hu) { return hu == Torso::kMuscle ? 180 : hu; })), "believed");
 }
 
 TEST(Hounsfield, RejectsACtWithoutItsRescaleTags) {
-  const std::string text = doubt(changed_ct([](int hu) { return hu + 1024; }));
+  const std::string text = finding(changed_ct([](int hu) { return hu + 1024; }));
   EXPECT_NE(text.find("no air"), std::string::npos) << text;
   EXPECT_NE(text.find("24 to 1174"), std::string::npos) << text;
   EXPECT_NE(text.find("--rescale"), std::string::npos);
   // With padding that is negative.
-  EXPECT_NE(doubt(changed_ct([](int hu) { return hu == Torso::kAir ? -2000 : hu + 1024; })), "believed");
+  EXPECT_NE(finding(changed_ct([](int hu) { return hu == Torso::kAir ? -2000 : hu + 1024; })), "believed");
 }
 
 TEST(Hounsfield, RejectsAnInterceptAppliedTwice) {
-  EXPECT_NE(doubt(changed_ct([](int hu) { return hu - 1024; })), "believed");
+  EXPECT_NE(finding(changed_ct([](int hu) { return hu - 1024; })), "believed");
 }
 
 TEST(Hounsfield, RejectsAnEightBitWindow) {
-  EXPECT_NE(doubt(changed_ct([](int hu) { return std::clamp((hu + 160) * 255 / 400, 0, 255); })), "believed");
-  EXPECT_NE(doubt(changed_ct([](int hu) { return std::clamp(hu, -160, 240); })), "believed");
+  EXPECT_NE(finding(changed_ct([](int hu) { return std::clamp((hu + 160) * 255 / 400, 0, 255); })), "believed");
+  EXPECT_NE(finding(changed_ct([](int hu) { return std::clamp(hu, -160, 240); })), "believed");
 }
 
 TEST(Hounsfield, RejectsConstantAndNoiseImages) {
-  EXPECT_NE(doubt(changed_ct([](int) { return 0; })), "believed");
+  EXPECT_NE(finding(changed_ct([](int) { return 0; })), "believed");
   EXPECT_NE(
-      doubt(changed_ct([n = 0U](int) mutable { return static_cast<int>((n = n * 1664525U + 1013904223U) >> 20); })),
+      finding(changed_ct([n = 0U](int) mutable { return static_cast<int>((n = n * 1664525U + 1013904223U) >> 20); })),
       "believed");
 }
 

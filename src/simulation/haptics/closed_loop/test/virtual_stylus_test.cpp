@@ -8,11 +8,11 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/closed_loop/closed_loop.h"
 #include "haptics/closed_loop/encoder.h"
-#include "haptics/closed_loop/passivity_observer.h"
 #include "haptics/closed_loop/rotation.h"
 #include "haptics/test/tick_period.h"
+#include "lab/haptics/closed_loop.h"
+#include "lab/haptics/passivity_observer.h"
 
 namespace trocar::haptics {
 namespace {

@@ -9,11 +9,11 @@
 #include "core/files/data_dir.h"
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/closed_loop/closed_loop.h"
 #include "haptics/closed_loop/virtual_device.h"
 #include "haptics/contact/test/flat_skin.h"
 #include "haptics/test/tick_period.h"
 #include "haptics/tick.h"
+#include "lab/haptics/closed_loop.h"
 
 namespace trocar::testing {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "lab/registration/generated_pair.h"
 #include "registration/ct_ultrasound/detail/sampled_information.h"
-#include "registration/ct_ultrasound/testing/generated_pair.h"
 
 namespace trocar::registration {
 namespace {

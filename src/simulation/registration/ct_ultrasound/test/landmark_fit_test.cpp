@@ -33,7 +33,7 @@ TEST(LandmarkFit, PairsByLabel) {
   const auto fit = fit_landmarks(ct(), ultrasound());
   ASSERT_TRUE(fit) << fit.error().text();
   EXPECT_LT((fit->fit.X_AB.p() - kX_CU.p()).norm(), 1e-9);
-  EXPECT_TRUE(fit->doubt.empty());
+  EXPECT_TRUE(fit->warning.empty());
   EXPECT_TRUE(fit->unmatched.empty());
 }
 
@@ -51,7 +51,7 @@ TEST(LandmarkFit, NamesTheWorstPair) {
   const auto doubtful = fit_landmarks(ct(), us);
   ASSERT_TRUE(doubtful);
   EXPECT_EQ(doubtful->worst, "lesion");
-  EXPECT_NE(doubtful->doubt.find("lesion"), std::string::npos);
+  EXPECT_NE(doubtful->warning.find("lesion"), std::string::npos);
   us[2].p += Vec3(0, 30, 0);
   EXPECT_NE(refusal(ct(), us).find("lesion"), std::string::npos);
 }

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "lab/registration/generated_pair.h"
 #include "registration/ct_ultrasound/overlay_picture.h"
-#include "registration/ct_ultrasound/testing/generated_pair.h"
 
 namespace trocar::registration {
 namespace {

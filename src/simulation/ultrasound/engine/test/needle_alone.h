@@ -5,10 +5,10 @@
 #include <numbers>
 #include <vector>
 
+#include "lab/ultrasound/test_scenes.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/engine/detail/needle_image.h"
 #include "ultrasound/engine/detail/point_spread.h"
-#include "ultrasound/phantom/test_scenes.h"
 
 /// Needles in pictures, for tests.
 namespace trocar::testing {

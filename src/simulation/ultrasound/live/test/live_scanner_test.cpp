@@ -6,8 +6,8 @@
 #include <chrono>
 #include <thread>
 
+#include "lab/ultrasound/test_scenes.h"
 #include "ultrasound/live/picture_maker.h"
-#include "ultrasound/phantom/test_scenes.h"
 
 namespace trocar::ultrasound {
 namespace {
