@@ -8,8 +8,7 @@
 
 #include "bench/harness.h"
 #include "cases/open_case.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::bench {
 namespace {

@@ -9,7 +9,7 @@
 #include "attempt/offline/run_session.h"
 #include "bench/benchmarks.h"
 #include "bench/real_data.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "io/patient/build_from_files.h"
 
 namespace trocar::bench {

@@ -7,7 +7,7 @@
 
 #include "bench/benchmarks.h"
 #include "bench/flat_scene.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "lab/haptics/push_trial.h"
 
 namespace trocar::bench {

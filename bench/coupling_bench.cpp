@@ -10,7 +10,7 @@
 
 #include "bench/benchmarks.h"
 #include "bench/flat_scene.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/parallel.h"
 #include "lab/haptics/stability_trial.h"
 

@@ -13,7 +13,7 @@
 #include "bench/benchmarks.h"
 #include "bench/ct_us_peers.h"
 #include "bench/real_data.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/random.h"
 #include "io/image/image_file.h"
 #include "io/sequence/transform_file.h"

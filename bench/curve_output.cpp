@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "report/svg_plot.h"
 
 namespace trocar::bench {

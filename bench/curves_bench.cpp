@@ -9,9 +9,9 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "bench/curve_output.h"
-#include "cases/needle_geometry.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
+#include "cases/scene_request.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "tasks/needle.h"
 
 namespace trocar::bench {

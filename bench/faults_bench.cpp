@@ -8,7 +8,7 @@
 
 #include "bench/benchmarks.h"
 #include "bench/flat_scene.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "lab/server/slow_loop_trial.h"
 #include "server/scene_builder.h"
 

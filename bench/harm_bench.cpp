@@ -11,8 +11,7 @@
 #include "attempt/offline/run_session.h"
 #include "bench/benchmarks.h"
 #include "cases/open_case.h"
-#include "core/files/temporary_folder.h"
-#include "io/patient/open_patient.h"
+#include "core/files/folders.h"
 #include "io/patient/patient_cache.h"
 
 namespace trocar::bench {

@@ -7,7 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "core/parse_number.h"
+#include "core/text.h"
 
 namespace trocar::bench {
 

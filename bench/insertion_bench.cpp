@@ -9,8 +9,8 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "bench/harness.h"
-#include "cases/needle_geometry.h"
 #include "cases/prepare_case.h"
+#include "cases/scene_request.h"
 #include "haptics/tick.h"
 
 namespace trocar::bench {

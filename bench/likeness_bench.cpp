@@ -9,7 +9,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "io/sequence/sequence_file.h"
 #include "lab/ultrasound/picture_figures.h"
 #include "png/png_file.h"

@@ -8,7 +8,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "bench/stations.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ultrasound/live/live_scanner.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "ultrasound/sweep/freehand_sweep.h"

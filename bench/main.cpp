@@ -9,7 +9,7 @@
 #include "config/json.h"
 #include "core/interruption.h"
 #include "core/log.h"
-#include "io/patient/open_patient.h"
+#include "io/patient/patient_cache.h"
 #include "output.h"
 #include "program_end.h"
 

@@ -10,7 +10,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/harness.h"
 #include "cases/open_case.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "io/patient/patient_folder.h"
 
 namespace trocar::bench {

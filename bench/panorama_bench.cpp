@@ -12,7 +12,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "bench/scan_rounds.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ultrasound/panorama/panorama_engine.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "ultrasound/sweep/mechanical_sweep.h"

@@ -10,7 +10,7 @@
 
 #include "bench/benchmarks.h"
 #include "bench/passivity_motions.h"
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "core/parallel.h"
 
 namespace trocar::bench {

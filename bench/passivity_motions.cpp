@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "anatomy/phantom/phantom.h"
-#include "cases/needle_geometry.h"
-#include "core/files/data_dir.h"
+#include "cases/scene_request.h"
+#include "core/files/folders.h"
 #include "tasks/needle.h"
 #include "volume/sampling.h"
 

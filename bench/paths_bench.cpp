@@ -10,9 +10,9 @@
 #include "anatomy/phantom/phantom.h"
 #include "bench/benchmarks.h"
 #include "bench/curve_output.h"
-#include "cases/needle_geometry.h"
 #include "cases/prepare_case.h"
-#include "core/files/atomic_file.h"
+#include "cases/scene_request.h"
+#include "core/files/output_file.h"
 #include "lab/cases/segmentation_study.h"
 
 namespace trocar::bench {

@@ -9,8 +9,8 @@
 #include <cerrno>
 #include <cstdlib>
 
-#include "core/files/data_dir.h"
-#include "core/files/find_program.h"
+#include "core/files/file_system.h"
+#include "core/files/folders.h"
 
 extern char** environ;
 

@@ -7,7 +7,7 @@
 
 #include "bench/benchmarks.h"
 #include "bench/real_data.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/random.h"
 #include "io/image/image_file.h"
 #include "io/sequence/plus_config.h"

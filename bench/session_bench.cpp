@@ -9,7 +9,7 @@
 #include "attempt/offline/run_session.h"
 #include "bench/harness.h"
 #include "bench/real_data.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "io/patient/patient_folder.h"
 
 namespace trocar::bench {

@@ -7,7 +7,7 @@
 #include "bench/benchmarks.h"
 #include "core/random.h"
 #include "lab/registration/volume_series.h"
-#include "registration/intensity/flatten.h"
+#include "registration/intensity/gray_levels.h"
 #include "registration/matching/match.h"
 #include "registration/shadow/shadow_mask.h"
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "attempt/tools/resting_transducer.h"
+#include "attempt/tools/transducer_motion.h"
 #include "volume/sampling.h"
 
 namespace trocar::bench {

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "cases/scene_request.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "haptics/haptic_scene.h"
 #include "link/client/haptic_client.h"
 #include "link/client/server_process.h"

@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "ultrasound/sweep/mechanical_sweep.h"
-#include "ultrasound/sweep/transform_graph.h"
+#include "ultrasound/sweep/tracked_sequence.h"
 #include "ultrasound/tissue/acoustic_scene.h"
 
 namespace trocar::bench {

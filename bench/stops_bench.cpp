@@ -9,8 +9,7 @@
 
 #include "bench/benchmarks.h"
 #include "bench/flat_scene.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "link/client/haptic_client.h"
 #include "server/haptic_server.h"
 

@@ -3,7 +3,7 @@
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
 #include "bench/scan_rounds.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/probe/probe_placement.h"
 

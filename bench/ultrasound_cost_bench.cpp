@@ -7,10 +7,10 @@
 #include "bench/benchmarks.h"
 #include "bench/calibration.h"
 #include "bench/processor_time.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/parallel.h"
 #include "ultrasound/engine/b_mode.h"
-#include "ultrasound/live/scan_schedule.h"
+#include "ultrasound/live/scan_picture.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "ultrasound/sweep/freehand_sweep.h"
 

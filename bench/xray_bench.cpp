@@ -19,11 +19,11 @@
 #include "bench/real_data.h"
 #include "bench/xray_contrast_bench.h"
 #include "bench/xray_fluoroscopy_bench.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "io/image/image_file.h"
-#include "xray/physics/attenuation.h"
 #include "xray/physics/beam.h"
-#include "xray/projection/project.h"
+#include "xray/physics/materials.h"
+#include "xray/projection/xray_volume.h"
 
 namespace trocar::bench {
 namespace {

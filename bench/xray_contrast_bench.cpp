@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "xray/contrast/contrast_flow.h"
 
 namespace trocar::bench {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/parse_number.h"
+#include "core/text.h"
 
 namespace trocar::arguments {
 namespace {

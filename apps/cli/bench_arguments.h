@@ -5,7 +5,7 @@
 
 #include "action.h"
 #include "bench/harness.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 
 namespace trocar::cli {
 

@@ -8,7 +8,7 @@
 
 #include "bench_arguments.h"
 #include "commands.h"
-#include "core/files/find_program.h"
+#include "core/files/file_system.h"
 
 namespace trocar::cli {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "commands.h"
 #include "config/json.h"
-#include "core/files/atomic_file.h"
-#include "core/files/user_folders.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "exams/exam_body.h"
 #include "exams/exam_result.h"
 #include "io/patient/patient_cache.h"

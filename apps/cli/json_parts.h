@@ -4,7 +4,7 @@
 
 #include "config/json.h"
 #include "geometry/pose.h"
-#include "learning/past_attempt.h"
+#include "learning/history.h"
 
 namespace trocar::cli {
 

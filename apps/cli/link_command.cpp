@@ -3,7 +3,7 @@
 
 #include "commands.h"
 #include "config/json.h"
-#include "link/curve_keys.h"
+#include "link/endpoint.h"
 
 namespace trocar::cli {
 namespace {

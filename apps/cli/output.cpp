@@ -9,10 +9,9 @@
 #include <mutex>
 
 #include "config/json.h"
-#include "core/files/data_dir.h"
-#include "core/files/output_check.h"
-#include "core/parse_number.h"
-#include "core/utf8.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
+#include "core/text.h"
 
 namespace trocar::cli {
 namespace fs = std::filesystem;

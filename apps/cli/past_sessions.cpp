@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "attempt/record/other_forces.h"
-#include "core/files/user_folders.h"
+#include "attempt/record/session_case.h"
+#include "core/files/folders.h"
 #include "output.h"
 
 namespace trocar::cli {

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "commands.h"
-#include "core/part_of_progress.h"
-#include "io/patient/export_patient.h"
-#include "io/patient/open_patient.h"
+#include "core/progress.h"
+#include "io/patient/build_from_files.h"
+#include "io/patient/patient_cache.h"
 #include "output.h"
 #include "patient_option.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "action.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 
 namespace trocar::cli {
 

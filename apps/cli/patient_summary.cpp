@@ -8,11 +8,11 @@
 #include "anatomy/patient_findings.h"
 #include "config/json.h"
 #include "constants.h"
-#include "core/files/data_dir.h"
-#include "geometry/triangle_mesh.h"
+#include "core/files/folders.h"
+#include "geometry/shapes.h"
 #include "json_parts.h"
+#include "tasks/assess_path.h"
 #include "tasks/needle.h"
-#include "tasks/readiness.h"
 
 namespace trocar::cli {
 namespace {

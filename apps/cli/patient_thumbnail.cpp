@@ -7,8 +7,8 @@
 #include <string>
 
 #include "cases/prepare_case.h"
-#include "core/part_of_progress.h"
-#include "io/patient/open_patient.h"
+#include "core/progress.h"
+#include "io/patient/patient_cache.h"
 #include "patient_option.h"
 #include "png/png_file.h"
 #include "scene/render_patient.h"

@@ -5,7 +5,7 @@
 #include "anatomy/patient.h"
 #include "commands.h"
 #include "core/result.h"
-#include "slices/thumbnail.h"
+#include "slices/slice_picture.h"
 #include "volume/image.h"
 
 namespace trocar::cli {

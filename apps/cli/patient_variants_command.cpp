@@ -8,10 +8,9 @@
 #include "anatomy/phantom/phantom.h"
 #include "commands.h"
 #include "config/json.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "output.h"
 #include "tasks/assess_path.h"
-#include "tasks/readiness.h"
 
 namespace trocar::cli {
 namespace {

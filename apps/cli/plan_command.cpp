@@ -8,7 +8,7 @@
 #include "config/json.h"
 #include "constants.h"
 #include "io/markups_file.h"
-#include "io/patient/open_patient.h"
+#include "io/patient/patient_cache.h"
 #include "json_parts.h"
 #include "patient_option.h"
 #include "tasks/fit_to_patient.h"

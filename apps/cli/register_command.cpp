@@ -8,8 +8,8 @@
 
 #include "commands.h"
 #include "config/json.h"
-#include "core/fail_at.h"
 #include "core/interruption.h"
+#include "core/result.h"
 #include "io/image/image_file.h"
 #include "io/markups_file.h"
 #include "io/sequence/transform_file.h"

@@ -6,7 +6,7 @@
 
 #include "action.h"
 #include "attempt/live/performer.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 
 namespace trocar::cli {
 

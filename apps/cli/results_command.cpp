@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
-#include "results/deletion.h"
+#include "results/repository.h"
 #include "results_commands.h"
 #include "serve_accounts.h"
 

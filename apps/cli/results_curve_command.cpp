@@ -6,8 +6,8 @@
 
 #include "config/json.h"
 #include "json_parts.h"
-#include "results/curves.h"
 #include "results/people.h"
+#include "results/proficiency.h"
 #include "results_commands.h"
 #include "tasks/task.h"
 

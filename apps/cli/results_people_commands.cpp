@@ -7,7 +7,7 @@
 #include "config/json.h"
 #include "json_parts.h"
 #include "results/attempts.h"
-#include "results/courses.h"
+#include "results/notes.h"
 #include "results_commands.h"
 #include "secret_line.h"
 

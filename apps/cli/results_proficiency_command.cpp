@@ -6,9 +6,9 @@
 #include "config/json.h"
 #include "json_parts.h"
 #include "learning/curriculum.h"
+#include "results/notes.h"
 #include "results/people.h"
 #include "results/proficiency.h"
-#include "results/teaching.h"
 #include "results_commands.h"
 #include "tasks/task.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "config/json.h"
-#include "core/parse_number.h"
+#include "core/text.h"
 #include "json_parts.h"
 #include "results/attempts.h"
 #include "results/validity.h"

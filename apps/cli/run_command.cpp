@@ -8,14 +8,14 @@
 #include "commands.h"
 #include "config/json.h"
 #include "constants.h"
-#include "io/patient/open_patient.h"
+#include "io/patient/patient_cache.h"
 #include "past_sessions.h"
 #include "patient_option.h"
 #include "replay_arguments.h"
-#include "report/report_story.h"
+#include "report/session_analysis.h"
 #include "run_results.h"
 #include "storage/score_json.h"
-#include "tasks/postures.h"
+#include "tasks/fit_to_patient.h"
 
 namespace trocar::cli {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "core/log.h"
 #include "core/version.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 #include "results/sessions.h"
 #include "results_commands.h"
 

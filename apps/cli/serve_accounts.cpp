@@ -6,12 +6,11 @@
 #include <chrono>
 
 #include "results/accounts.h"
-#include "results/deletion.h"
 #include "results/names.h"
+#include "results/repository.h"
 #include "results_commands.h"
 #include "secret_line.h"
 #include "signing/password.h"
-#include "signing/password_rules.h"
 
 namespace trocar::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include "database/database_url.h"
 #include "results/repository.h"
 #include "serve_accounts.h"
-#include "web/security/security_headers.h"
+#include "web/security/request_origin.h"
 #include "web/service.h"
 #include "web/transport/http_server.h"
 

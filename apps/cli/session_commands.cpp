@@ -1,17 +1,15 @@
 // trocar session export, motion and report; metrics: session_metrics_command.cpp.
 #include <fmt/format.h>
 
-#include "attempt/live/attempt_event.h"
+#include "attempt/live/attempt_view.h"
 #include "attempt/record/session_case.h"
-#include "attempt/record/stylus_motion.h"
 #include "commands.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "io/patient/open_patient.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
+#include "io/patient/patient_cache.h"
 #include "past_sessions.h"
 #include "patient_option.h"
 #include "report/html_report.h"
-#include "report/text_report.h"
 #include "storage/session_file.h"
 
 namespace trocar::cli {

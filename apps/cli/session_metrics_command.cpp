@@ -5,12 +5,12 @@
 #include <cmath>
 #include <fstream>
 
-#include "cases/image_plane.h"
+#include "cases/imaging.h"
 #include "commands.h"
 #include "config/json.h"
 #include "core/files/input_file.h"
 #include "io/markups_file.h"
-#include "io/patient/open_patient.h"
+#include "io/patient/patient_cache.h"
 #include "metrics/measure_run.h"
 #include "metrics/pose_csv.h"
 #include "past_sessions.h"

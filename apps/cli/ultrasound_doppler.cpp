@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "motion/motion_clock.h"
+#include "motion/patient_motion.h"
 
 namespace trocar::cli {
 namespace {

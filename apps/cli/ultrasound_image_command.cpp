@@ -15,7 +15,7 @@
 #include "config/json.h"
 #include "constants.h"
 #include "io/image/image_file.h"
-#include "io/patient/patient_panorama.h"
+#include "io/patient/patient_extras.h"
 #include "io/sequence/transform_file.h"
 #include "png/png_file.h"
 #include "ultrasound/engine/b_mode.h"

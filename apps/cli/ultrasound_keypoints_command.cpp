@@ -5,9 +5,9 @@
 
 #include "commands.h"
 #include "config/json.h"
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "json_parts.h"
-#include "registration/panorama/prepared_volume.h"
+#include "registration/panorama/pair_registration.h"
 #include "ultrasound_volume.h"
 
 namespace trocar::cli {

@@ -6,7 +6,7 @@
 #include "commands.h"
 #include "config/json.h"
 #include "constants.h"
-#include "io/patient/open_patient.h"
+#include "io/patient/patient_cache.h"
 #include "patient_option.h"
 #include "ultrasound/probe/probe_view.h"
 #include "ultrasound/probe/transducer.h"

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "config/json.h"
-#include "core/parse_number.h"
+#include "core/text.h"
 #include "io/sequence/transform_file.h"
 #include "patient_option.h"
 #include "ultrasound/probe/probe_placement.h"

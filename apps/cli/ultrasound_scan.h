@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "action.h"
-#include "io/patient/open_patient.h"
+#include "io/patient/patient_cache.h"
 #include "output.h"
 #include "ultrasound/doppler/vessel_flow.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/probe/probe_view.h"
-#include "ultrasound/probe/view_visibility.h"
 #include "ultrasound/scanner/display_settings.h"
 
 namespace trocar::cli {

@@ -8,8 +8,8 @@
 
 #include "commands.h"
 #include "config/json.h"
-#include "core/files/atomic_file.h"
-#include "core/part_of_progress.h"
+#include "core/files/output_file.h"
+#include "core/progress.h"
 #include "io/image/image_file.h"
 #include "io/sequence/transform_file.h"
 #include "registration/panorama/stitch.h"

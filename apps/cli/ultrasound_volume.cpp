@@ -1,6 +1,6 @@
 #include "ultrasound_volume.h"
 
-#include "core/fail_at.h"
+#include "core/result.h"
 #include "io/image/image_file.h"
 #include "output.h"
 

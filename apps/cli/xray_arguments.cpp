@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "core/files/data_dir.h"
-#include "core/parse_number.h"
+#include "core/files/folders.h"
+#include "core/text.h"
 #include "io/markups_file.h"
-#include "xray/geometry/c_arm_presets.h"
-#include "xray/tools/tool_table.h"
+#include "xray/geometry/c_arm.h"
+#include "xray/tools/tool_shape.h"
 
 namespace trocar::cli {
 namespace {

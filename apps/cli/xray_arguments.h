@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "action.h"
-#include "io/patient/patient_source.h"
-#include "xray/fluoroscopy/fluoroscopy_frame.h"
+#include "io/patient/patient_folder.h"
+#include "xray/fluoroscopy/fluoroscope.h"
 
 namespace trocar::cli {
 

@@ -8,14 +8,14 @@
 #include <memory>
 #include <optional>
 
-#include "cases/contrast_blood.h"
+#include "cases/imaging.h"
 #include "commands.h"
 #include "config/json.h"
 #include "constants.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "dicom/xa/xa_file.h"
 #include "io/image/image_file.h"
-#include "io/patient/open_patient.h"
+#include "io/patient/patient_cache.h"
 #include "io/sequence/transform_file.h"
 #include "patient_option.h"
 #include "png/png_file.h"

@@ -11,10 +11,10 @@
 #include <string>
 #include <string_view>
 
-#include "core/files/atomic_file.h"
-#include "core/files/find_program.h"
+#include "core/files/file_system.h"
+#include "core/files/folders.h"
 #include "core/files/input_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/output_file.h"
 
 namespace trocar {
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "core/result.h"
-#include "devices/simulated/replay_file.h"
+#include "devices/simulated/replay_device.h"
 
 namespace trocar {
 

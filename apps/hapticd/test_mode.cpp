@@ -14,11 +14,9 @@
 #include <thread>
 
 #include "core/start_thread.h"
-#include "devices/stylus_profile.h"
+#include "devices/workspace_map.h"
 #include "realtime/periodic_loop.h"
-#include "realtime/real_time_grant.h"
 #include "server/device_trial.h"
-#include "server/weigh_report.h"
 
 namespace trocar {
 namespace {

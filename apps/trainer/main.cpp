@@ -12,8 +12,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "command.h"
-#include "core/files/data_dir.h"
-#include "core/files/user_folders.h"
+#include "core/files/folders.h"
 #include "core/version.h"
 #include "pages/start_page.h"
 #include "program_end.h"

@@ -8,7 +8,7 @@
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "cases/prescribed_motion.h"
+#include "cases/force_curve.h"
 #include "core/progress.h"
 #include "core/result.h"
 #include "haptics/haptic_scene.h"

@@ -3,8 +3,8 @@
 #include <array>
 #include <memory>
 
-#include "haptics/closed_loop/virtual_stylus.h"
 #include "haptics/coupling/device_preset.h"
+#include "haptics/coupling/virtual_stylus.h"
 #include "haptics/tick.h"
 #include "lab/haptics/passivity_observer.h"
 

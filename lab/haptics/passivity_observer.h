@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "geometry/vec.h"
-#include "geometry/wrench.h"
 
 namespace trocar::haptics {
 

@@ -7,9 +7,9 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 #include "registration/shadow/beams.h"
-#include "volume/gaussian_blur.h"
+#include "volume/resample.h"
 
 namespace trocar::registration {
 namespace {

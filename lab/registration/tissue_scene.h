@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 #include "geometry/vec.h"
 
 namespace trocar::registration {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/check.h"
 #include "core/random.h"
+#include "core/result.h"
 #include "volume/sampling.h"
 
 namespace trocar::registration {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "devices/simulated/fault_schedule.h"
+#include "devices/simulated/faulty_device.h"
 #include "server/servo.h"
 
 namespace trocar::server {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/check.h"
 #include "core/parallel.h"
+#include "core/result.h"
 #include "ultrasound/probe/scan_geometry.h"
 
 namespace trocar::ultrasound {

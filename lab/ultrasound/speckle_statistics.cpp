@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "ultrasound/engine/b_mode.h"
 
 namespace trocar::ultrasound {

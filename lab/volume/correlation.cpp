@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/check.h"
+#include "core/result.h"
 
 namespace trocar::volume {
 

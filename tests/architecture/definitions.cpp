@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "architecture/source_files.h"
-#include "core/ascii.h"
+#include "core/text.h"
 
 namespace trocar::architecture {
 namespace {

@@ -217,7 +217,7 @@ TEST_F(Repository, EveryModuleIsDescribed) {
 TEST_F(Repository, LetterAndDigitChecksIgnoreTheLocale) {
   for (const auto& [path, text] : source_files({"src", "apps", "bench", "lab", "tests"}))
     for (const char* word : {"tolower", "toupper", "isalnum", "isalpha", "isdigit", "isspace", "isupper", "islower"})
-      EXPECT_EQ(text.find(std::string(word) + '('), std::string::npos) << path << ": use core/ascii.h for " << word;
+      EXPECT_EQ(text.find(std::string(word) + '('), std::string::npos) << path << ": use core/text.h for " << word;
 }
 
 TEST_F(Repository, FilesStayBelowTheLineLimit) {

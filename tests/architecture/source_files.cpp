@@ -4,8 +4,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/ascii.h"
 #include "core/testing/source_dir.h"
+#include "core/text.h"
 
 namespace trocar::architecture {
 

@@ -8,7 +8,7 @@
 namespace trocar::architecture {
 
 /// "path:line: ..." for every thread that is started and every folder that is iterated over outside of
-/// core/start_thread.h and core/files/list_folder.h.
+/// core/start_thread.h and core/files/folders.h.
 std::vector<std::string> find_throwing_forms(const std::string& path, std::string_view source);
 
 }  // namespace trocar::architecture

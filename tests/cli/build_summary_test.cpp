@@ -7,7 +7,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "cli/program.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "io/image/image_file.h"
 
 namespace trocar::cli_test {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/program.h"
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 
 namespace trocar::cli_test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "cli/program.h"
 #include "cli/short_session.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "exams/exam_seal.h"
 
 namespace trocar::cli_test {

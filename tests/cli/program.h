@@ -4,7 +4,7 @@
 #include <string>
 
 #include "config/json.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::cli_test {
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string_view>
 
-#include "core/parse_number.h"
+#include "core/text.h"
 #include "haptics/force_version.h"
 #include "program.h"
 #include "storage/session_file.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "cli/program.h"
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "io/image/image_file.h"
 #include "io/sequence/transform_file.h"
 #include "lab/registration/volume_series.h"

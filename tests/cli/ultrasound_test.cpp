@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "cli/program.h"
-#include "core/files/atomic_file.h"
-#include "core/parse_number.h"
+#include "core/files/output_file.h"
+#include "core/text.h"
 #include "geometry/pose.h"
 #include "io/image/image_file.h"
 #include "io/sequence/transform_file.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "attempt/offline/run_session.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::testing {
 

@@ -10,9 +10,9 @@
 #include <csignal>
 
 #include "attempt.h"
-#include "cases/needle_geometry.h"
+#include "cases/scene_request.h"
 #include "cases/testing/phantom_case.h"
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "core/interruption.h"
 #include "haptics/insertion/insertion_law.h"
 #include "haptics/needle_geometry.h"

@@ -5,7 +5,6 @@
 
 #include "attempt.h"
 #include "cases/prepare_case.h"
-#include "io/patient/open_patient.h"
 #include "io/patient/patient_cache.h"
 
 namespace trocar::testing {

@@ -10,7 +10,7 @@
 #include "anatomy/phantom/phantom.h"
 #include "cases/force_curve.h"
 #include "cases/prepare_case.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "dicom/testing/segmentation_writer.h"
 #include "haptics/haptic_scene.h"
 #include "io/image/image_file.h"

@@ -7,8 +7,7 @@
 #include <string>
 
 #include "cases/prepare_case.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "devices/device_spec.h"
 #include "server/haptic_server.h"
 

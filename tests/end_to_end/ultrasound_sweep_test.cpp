@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "ultrasound/probe/probe_view.h"
 #include "ultrasound/sweep/freehand.h"

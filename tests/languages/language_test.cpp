@@ -8,12 +8,12 @@
 #include "anatomy/structure_words.h"
 #include "anatomy/tissue/tissue_parameters.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "attempt/live/attempt_event.h"
+#include "attempt/live/attempt_view.h"
 #include "cases/testing/cached_case.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "end_to_end/attempt.h"
 #include "report/html_report.h"
-#include "tasks/active_time.h"
+#include "tasks/action.h"
 #include "tasks/task.h"
 
 namespace trocar::testing {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::pacs_test {
 

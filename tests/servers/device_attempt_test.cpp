@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "attempt/live/live_attempt.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "devices/testing/gamepad_stand_in.h"
 #include "devices/testing/spacenav_daemon.h"
 #include "servers/live_attempt_lab.h"

@@ -5,7 +5,7 @@
 
 #include "attempt/live/live_attempt.h"
 #include "attempt/record/attempt_replay.h"
-#include "attempt/record/recording_space.h"
+#include "attempt/record/journal.h"
 #include "servers/live_attempt_lab.h"
 #include "storage/session_file.h"
 

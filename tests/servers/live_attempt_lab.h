@@ -7,7 +7,7 @@
 
 #include "attempt/live/live_attempt.h"
 #include "cases/testing/cached_case.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "servers/live_server.h"
 
 namespace trocar::servers_test {

@@ -8,9 +8,9 @@
 
 #include "attempt/offline/run_session.h"
 #include "attempt/record/attempt_replay.h"
-#include "attempt/tools/led_pose.h"
+#include "attempt/tools/transducer_motion.h"
 #include "cases/scene_request.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "servers/live_attempt_lab.h"
 #include "storage/session_file.h"
 

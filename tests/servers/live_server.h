@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "link/client/haptic_client.h"
 #include "link/client/server_process.h"
 

@@ -10,9 +10,9 @@
 
 #include "attempt/live/attempt_loop.h"
 #include "attempt/live/live_attempt.h"
-#include "attempt/tools/resting_transducer.h"
+#include "attempt/tools/transducer_motion.h"
 #include "cases/testing/phantom_case.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "servers/simulated_server.h"
 
 namespace trocar::servers_test {

@@ -6,7 +6,6 @@
 
 #include "attempt/offline/run_session.h"
 #include "attempt/record/attempt_replay.h"
-#include "cases/needle_geometry.h"
 #include "cases/scene_request.h"
 #include "haptics/needle_geometry.h"
 #include "servers/simulated_attempt_lab.h"

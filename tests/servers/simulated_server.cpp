@@ -3,7 +3,7 @@
 #include <utility>
 #include <variant>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "devices/device_spec.h"
 #include "haptics/scene_options.h"
 

@@ -12,9 +12,9 @@
 #include "devices/haptic_device.h"
 #include "link/testing/in_process_link.h"
 #include "realtime/loop_statistics.h"
-#include "server/command_queue.h"
 #include "server/scene_builder.h"
 #include "server/servo.h"
+#include "server/servo_commands.h"
 
 namespace trocar::servers_test {
 

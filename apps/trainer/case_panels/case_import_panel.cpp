@@ -16,8 +16,8 @@
 #include <memory>
 #include <optional>
 
+#include "anatomy/patient.h"
 #include "anatomy/plausibility/judge_anatomy.h"
-#include "anatomy/posture.h"
 #include "case_builder/case_edits.h"
 #include "case_panels/case_panel.h"
 #include "ui_kit/parts.h"

@@ -9,7 +9,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "case_builder/landmark_names.h"
+#include "case_builder/case_edits.h"
 #include "case_builder/ultrasound.h"
 #include "case_panels/landmark_text.h"
 #include "ui_kit/parts.h"

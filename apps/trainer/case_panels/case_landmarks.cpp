@@ -9,7 +9,6 @@
 #include <QVBoxLayout>
 
 #include "case_builder/case_edits.h"
-#include "case_builder/landmark_names.h"
 #include "case_panels/landmark_text.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/window_language.h"

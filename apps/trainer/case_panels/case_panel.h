@@ -4,7 +4,7 @@
 #include <string>
 
 #include "case_builder/case_editor.h"
-#include "slices/fuse_ultrasound.h"
+#include "slices/paint_slice.h"
 
 class QComboBox;
 class QLabel;

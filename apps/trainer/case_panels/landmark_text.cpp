@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "case_builder/landmark_names.h"
+#include "case_builder/case_edits.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/window_language.h"
 

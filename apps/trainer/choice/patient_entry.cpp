@@ -5,9 +5,9 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "cases/prepare_case.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
+#include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
-#include "io/patient/patient_thumbnail.h"
 #include "tasks/task.h"
 #include "ui_kit/window_language.h"
 

@@ -2,7 +2,7 @@
 
 #include <QCoreApplication>
 
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 
 namespace trocar::trainer {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "scene/guidance.h"
+#include "scene/scene_options.h"
 
 namespace trocar::trainer {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "anatomy/structure_words.h"
-#include "attempt/guide/gun_shot.h"
+#include "attempt/guide/needle_view.h"
 #include "control/attempt_words.h"
 #include "control/force_bands.h"
 #include "control/task_layout.h"

@@ -1,7 +1,7 @@
 // What scripts, tests and benchmarks read from a running attempt.
 #include <algorithm>
 
-#include "attempt/guide/gun_shot.h"
+#include "attempt/guide/needle_view.h"
 #include "control/attempt_control.h"
 #include "pages/work_page.h"
 #include "panels/puncture_panel.h"

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <random>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "exams/exam_result.h"
 #include "io/patient/patient_cache.h"
 #include "learning/history.h"

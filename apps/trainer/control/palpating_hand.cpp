@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "anatomy/skin_now.h"
-#include "cases/needle_geometry.h"
+#include "cases/scene_request.h"
 #include "panels/palpation_tag.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/window_language.h"

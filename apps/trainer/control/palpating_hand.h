@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cases/open_case.h"
-#include "haptics/contact/palpation.h"
+#include "haptics/contact/contact.h"
 #include "views/tools_shown.h"
 
 namespace trocar::trainer {

@@ -3,8 +3,8 @@
 #include <QCoreApplication>
 #include <algorithm>
 
-#include "attempt/guide/transducer_guide.h"
-#include "tasks/bevel.h"
+#include "attempt/guide/puncture_guide.h"
+#include "tasks/fit_to_patient.h"
 
 namespace trocar::trainer {
 namespace {

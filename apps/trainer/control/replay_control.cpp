@@ -3,17 +3,17 @@
 #include <QKeyEvent>
 #include <algorithm>
 
-#include "attempt/live/attempt_event.h"
+#include "attempt/live/attempt_view.h"
 #include "control/force_bands.h"
 #include "control/path_comparison.h"
 #include "control/task_layout.h"
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "pages/work_page.h"
 #include "panels/expert_path_list.h"
 #include "panels/feedback_panel.h"
 #include "panels/hint_list.h"
 #include "report/html_report.h"
-#include "telemetry/tick_pose.h"
+#include "telemetry/tick_sample.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "ui_kit/window_language.h"

@@ -5,14 +5,14 @@
 #include <chrono>
 #include <utility>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "pages/history_card.h"
 #include "pages/person_bar.h"
 #include "pages/start_page.h"
 #include "panels/feedback_panel.h"
 #include "panels/status_text.h"
 #include "results/sessions.h"
-#include "signing/password_rules.h"
+#include "signing/password.h"
 #include "tasks/task.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/window_language.h"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/background_job.h"
-#include "results/curves.h"
 #include "results/people.h"
+#include "results/proficiency.h"
 #include "storage/session_file.h"
 
 namespace trocar::trainer {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "case_builder/case_editor.h"
-#include "slices/fuse_ultrasound.h"
 #include "slices/paint_slice.h"
 
 class QGridLayout;

@@ -2,7 +2,7 @@
 
 #include <QWidget>
 
-#include "results/curves.h"
+#include "results/proficiency.h"
 
 namespace trocar::trainer {
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "exams/exam_body.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {

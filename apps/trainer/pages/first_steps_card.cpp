@@ -6,7 +6,7 @@
 #include <QSettings>
 #include <QVBoxLayout>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {

@@ -2,7 +2,7 @@
 
 #include <QFrame>
 
-#include "results/curves.h"
+#include "results/proficiency.h"
 
 class QLabel;
 

@@ -9,7 +9,7 @@
 #include <QSignalBlocker>
 
 #include "results/names.h"
-#include "signing/password_rules.h"
+#include "signing/password.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {

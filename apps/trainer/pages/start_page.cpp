@@ -13,7 +13,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "pages/exam_choice.h"
 #include "pages/first_steps_card.h"
 #include "pages/history_card.h"
@@ -21,7 +21,7 @@
 #include "pages/patient_cards.h"
 #include "pages/person_bar.h"
 #include "panels/device_choice.h"
-#include "tasks/allowed_needles.h"
+#include "tasks/fit_to_patient.h"
 #include "tasks/needle.h"
 #include "tasks/task.h"
 #include "ui_kit/parts.h"

@@ -3,7 +3,7 @@
 #include <QWidget>
 
 #include "choice/trainer_choice.h"
-#include "results/curves.h"
+#include "results/proficiency.h"
 #include "ui_kit/page_keys.h"
 
 class QButtonGroup;

@@ -6,7 +6,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "panels/feedback_panel.h"
 #include "panels/puncture_panel.h"
 #include "parameters/parameter_panel.h"

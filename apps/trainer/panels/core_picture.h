@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "attempt/guide/gun_shot.h"
+#include "attempt/guide/needle_view.h"
 
 class QPainter;
 

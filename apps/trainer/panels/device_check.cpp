@@ -6,7 +6,7 @@
 #include "attempt/servers/local_server.h"
 #include "link/client/server_process.h"
 #include "panels/status_text.h"
-#include "telemetry/gate_state.h"
+#include "telemetry/tick_sample.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/window_language.h"
 

@@ -10,7 +10,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-#include "attempt/servers/tool_devices.h"
+#include "attempt/servers/haptic_servers.h"
 #include "panels/device_test_dialog.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/window_language.h"

@@ -3,7 +3,7 @@
 #include <QColor>
 #include <QWidget>
 
-#include "haptics/contact/palpation.h"
+#include "haptics/contact/contact.h"
 
 namespace trocar::trainer {
 

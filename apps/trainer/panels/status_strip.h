@@ -4,7 +4,7 @@
 #include <QFrame>
 #include <vector>
 
-#include "attempt/record/run_result.h"
+#include "attempt/record/score_session.h"
 #include "panels/status_health.h"
 #include "ui_kit/page_keys.h"
 

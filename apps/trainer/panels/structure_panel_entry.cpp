@@ -2,7 +2,7 @@
 
 #include <QGuiApplication>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "panels/structure_panel.h"
 
 namespace trocar::trainer {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "anatomy/tissue/tissue_parameters.h"
-#include "anatomy/tissue/tissue_setting.h"
+#include "anatomy/tissue/tissue_settings.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "core/result.h"
 #include "core/step_history.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/files/user_folders.h"
+#include "core/files/folders.h"
 #include "parameters/force_preview.h"
 #include "parameters/parameter_list.h"
 #include "parameters/parameter_profiles.h"

@@ -6,7 +6,7 @@
 #include "control/learning_control.h"
 #include "control/results_control.h"
 #include "core/version.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 #include "pages/briefing_page.h"
 #include "pages/start_page.h"
 #include "pages/work_page.h"

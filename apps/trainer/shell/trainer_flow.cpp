@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "attempt/record/other_forces.h"
+#include "attempt/record/session_case.h"
 #include "cases/scene_request.h"
 #include "control/attempt_control.h"
 #include "control/learning_control.h"

@@ -1,9 +1,9 @@
 // From a choice to an open case with its briefing.
-#include "attempt/record/recording_space.h"
+#include "attempt/record/journal.h"
 #include "control/learning_control.h"
 #include "control/results_control.h"
 #include "core/available_memory.h"
-#include "core/files/disk_space.h"
+#include "core/files/file_system.h"
 #include "io/patient/patient_cache.h"
 #include "pages/briefing_page.h"
 #include "pages/start_page.h"

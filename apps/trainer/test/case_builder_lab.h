@@ -18,8 +18,8 @@
 #include <string>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "io/image/image_file.h"
 #include "pages/case_page.h"
 #include "ui_kit/parts.h"

@@ -3,10 +3,10 @@
 #include <QLabel>
 #include <QTableWidget>
 
-#include "case_builder/import_case.h"
+#include "case_builder/case_files.h"
 #include "case_builder/ultrasound.h"
 #include "core/random.h"
-#include "io/patient/patient_panorama.h"
+#include "io/patient/patient_extras.h"
 #include "test/case_builder_lab.h"
 #include "test/widget_actions.h"
 

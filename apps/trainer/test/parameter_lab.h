@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "parameters/force_preview.h"
 #include "parameters/parameter_panel.h"
 #include "test/open_abdomen.h"

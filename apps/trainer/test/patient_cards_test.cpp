@@ -10,9 +10,9 @@
 #include <set>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
-#include "io/patient/patient_thumbnail.h"
 #include "test/widget_actions.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
@@ -20,7 +20,7 @@
 namespace trocar::trainer {
 namespace {
 
-/// Made-up patients: name, mode and picture file differ.
+/// Made-up patients: name, difficulty and picture file differ.
 std::vector<PatientEntry> made_up(int count, const QString& picture = {}) {
   std::vector<PatientEntry> entries;
   for (int n = 1; n <= count; ++n) {
@@ -30,7 +30,7 @@ std::vector<PatientEntry> made_up(int count, const QString& picture = {}) {
     entry.description =
         QStringLiteral("Made up for a test, with a description that is too long for one line of a card");
     entry.thumbnail = n % 2 == 0 ? picture : QString();
-    entry.mode = 1 + (n - 1) % 5;
+    entry.difficulty = 1 + (n - 1) % 5;
     entries.push_back(entry);
   }
   return entries;
@@ -176,7 +176,7 @@ TEST(PatientEntry, ListsEmbeddedPatientsByDifficulty) {
     EXPECT_EQ(entries[n].task, QStringLiteral("Biopsy of a liver lesion"));
     EXPECT_FALSE(entries[n].description.isEmpty());
     if (n > 0) {
-      EXPECT_GE(entries[n].mode, entries[n - 1].mode);
+      EXPECT_GE(entries[n].difficulty, entries[n - 1].difficulty);
     }
   }
   EXPECT_TRUE(embedded_entries(QStringLiteral("no-such-task"), {}).empty());
@@ -190,7 +190,7 @@ TEST(PatientEntry, FolderEntryHasItsThumbnail) {
   ASSERT_TRUE(io::save_patient(*patient, {}, at, {}, {{io::kThumbnailFile, "bytes"}}));
   const PatientEntry entry = folder_entry(to_qt(at.string()));
   EXPECT_EQ(to_std(entry.thumbnail), (at / io::kThumbnailFile).string());
-  EXPECT_EQ(entry.mode, 0);
+  EXPECT_EQ(entry.difficulty, 0);
   EXPECT_EQ(spoken_text(entry), entry.name + QStringLiteral(", ") + entry.description);
   const PatientEntry none = folder_entry(QStringLiteral("/somewhere/patient-7"));
   EXPECT_EQ(none.name, QStringLiteral("patient-7"));

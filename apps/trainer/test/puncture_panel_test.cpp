@@ -10,7 +10,7 @@
 #include <QToolButton>
 #include <cmath>
 
-#include "attempt/guide/gun_shot.h"
+#include "attempt/guide/needle_view.h"
 #include "panels/step_list.h"
 #include "test/widget_actions.h"
 

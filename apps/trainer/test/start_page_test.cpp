@@ -15,7 +15,7 @@
 #include <filesystem>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "io/patient/patient_folder.h"
 #include "test/widget_actions.h"
 #include "ui_kit/parts.h"
@@ -36,7 +36,7 @@ TEST_F(StartPageTest, DefaultsToLiverBiopsyOfTheEmbeddedPatient) {
   const StartPage page;
   EXPECT_EQ(page.choice().task, "liver-biopsy");
   EXPECT_EQ(page.choice().patient, "abdomen");
-  EXPECT_EQ(page.choice().difficulty, TrainingMode::kGuided);
+  EXPECT_EQ(page.choice().mode, TrainingMode::kGuided);
   EXPECT_TRUE(page.findChild<QPushButton*>(QStringLiteral("start"))->isEnabled());
 }
 
@@ -51,7 +51,7 @@ TEST_F(StartPageTest, RemembersTheLastStartedChoice) {
     page.findChild<QPushButton*>(QStringLiteral("start"))->click();
   }
   const StartPage again;
-  EXPECT_EQ(again.choice().difficulty, TrainingMode::kAssisted);
+  EXPECT_EQ(again.choice().mode, TrainingMode::kAssisted);
   EXPECT_EQ(again.choice().force_model, "proxy");
   EXPECT_EQ(again.choice().needle_device, "gamepad");
 }
@@ -123,7 +123,7 @@ TEST_F(StartPageTest, OffersAndStartsTheNextExercise) {
   TrainerChoice exercise;
   exercise.task = "ptcd";
   exercise.patient = "ptcd-2";
-  exercise.difficulty = TrainingMode::kAssisted;
+  exercise.mode = TrainingMode::kAssisted;
   page.offer_next(QStringLiteral("Bile duct puncture, case 2, assisted"), QStringLiteral("It is due today."), exercise);
   EXPECT_FALSE(card->isVisible()) << "a new user begins with the first steps";
   page.findChild<QPushButton*>(QStringLiteral("first-steps-skip"))->click();
@@ -141,7 +141,7 @@ TEST_F(StartPageTest, OffersAndStartsTheNextExercise) {
   ASSERT_EQ(started.size(), 1u);
   EXPECT_EQ(started[0].task, "ptcd");
   EXPECT_EQ(started[0].patient, "ptcd-2");
-  EXPECT_EQ(started[0].difficulty, TrainingMode::kAssisted);
+  EXPECT_EQ(started[0].mode, TrainingMode::kAssisted);
   EXPECT_EQ(started[0].needle_device, "gamepad");  // the devices stay
   EXPECT_EQ(started[0].force_model, "");           // the task's own
   page.offer_next({}, {}, {});
@@ -224,7 +224,7 @@ TEST_F(StartPageTest, ExamKeepsThePreviousPracticeChoice) {
   }
   StartPage again;
   TrainerChoice guided = again.choice();
-  EXPECT_EQ(guided.difficulty, TrainingMode::kExam);
+  EXPECT_EQ(guided.mode, TrainingMode::kExam);
   again.findChild<QAbstractButton*>(QStringLiteral("difficulty-guided"))->click();
   guided = again.choice();
   EXPECT_EQ(guided.needle, "biopsy-16g");

@@ -11,7 +11,7 @@
 #include <QThread>
 #include <cstdlib>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "test/open_abdomen.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "views/ultrasound/ultrasound_view.h"

@@ -8,7 +8,7 @@
 #include <QLocale>
 #include <QXmlStreamReader>
 
-#include "case_builder/landmark_names.h"
+#include "case_builder/case_edits.h"
 #include "case_panels/landmark_text.h"
 #include "script/english_text.h"
 #include "ui_kit/action_table.h"

@@ -11,8 +11,8 @@
 #include <QToolButton>
 #include <map>
 
-#include "core/files/data_dir.h"
-#include "scene/needle_shape.h"
+#include "core/files/folders.h"
+#include "scene/tool_shapes.h"
 #include "script/widget_events.h"
 #include "tasks/needle.h"
 #include "test/open_abdomen.h"

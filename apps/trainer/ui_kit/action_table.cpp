@@ -5,7 +5,7 @@
 #include <QStringList>
 #include <algorithm>
 
-#include "core/check.h"
+#include "core/result.h"
 
 namespace trocar::trainer {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "attempt/guide/needle_shaft.h"
+#include "attempt/guide/needle_view.h"
 
 namespace trocar::trainer {
 namespace {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "geometry/pose.h"
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 #include "motion/patient_motion.h"
-#include "scene/fingertip.h"
+#include "scene/scene_options.h"
 
 namespace trocar::trainer {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "attempt/guide/gun_shot.h"
+#include "attempt/guide/needle_view.h"
 #include "tasks/needle.h"
 #include "views/tools_shown.h"
 

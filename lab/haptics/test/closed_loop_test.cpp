@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/testing/allocation_guard.h"
 #include "haptics/test/layered_patient.h"
 #include "lab/haptics/push_trial.h"

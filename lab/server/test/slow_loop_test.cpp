@@ -1,8 +1,7 @@
 // A loop of 1 to 1000 ms on every simulated device while a hand moves it in tissue.
 #include <gtest/gtest.h>
 
-#include "haptics/gate/device_gate.h"
-#include "haptics/gate/loop_limits.h"
+#include "haptics/gate/gate_params.h"
 #include "lab/server/slow_loop_trial.h"
 #include "server/test/servo_rig.h"
 

@@ -9,8 +9,8 @@
 
 #include "core/result.h"
 #include "devices/haptic_device.h"
-#include "devices/simulated/fault_schedule.h"
-#include "devices/simulated/replay_file.h"
+#include "devices/simulated/faulty_device.h"
+#include "devices/simulated/replay_device.h"
 
 namespace trocar::devices {
 

@@ -5,7 +5,7 @@
 
 #include "core/result.h"
 #include "geometry/pose.h"
-#include "geometry/wrench.h"
+#include "geometry/vec.h"
 #include "haptics/coupling/device_preset.h"
 
 namespace trocar::devices {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,14 +9,55 @@
 #include <vector>
 
 #include "geometry/pose.h"
-#include "link/limits.h"
-#include "link/server_state.h"
-#include "motion/motion_clock.h"
+#include "motion/patient_motion.h"
 #include "realtime/loop_statistics.h"
 #include "telemetry/needle_shape.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::link {
+
+/// State of a haptic server.
+enum class ServerState : std::uint8_t {
+  kNoScene,  ///< No scene was loaded yet.
+  kLoading,  ///< Builds a scene.
+  kReady,    ///< Has a scene; forces are not requested.
+  kRunning,  ///< Forces are requested; GateMode states whether they are on.
+  kFault,    ///< The safety gate has latched a fault.
+};
+inline constexpr ServerState kLastServerState = ServerState::kFault;
+/// Text for messages: "no scene", "loading", "ready", "running", "fault".
+const char* to_string(ServerState state) noexcept;
+
+}  // namespace trocar::link
+
+/// Limits of a server for its clients. docs/link.md lists these numbers for other implementations.
+namespace trocar::link {
+
+inline constexpr std::size_t kMostMessageBytes = 1 << 20;  ///< Larger messages are dropped unread.
+inline constexpr std::size_t kMostTextBytes = 256 * 1024;  ///< Limit of one string (a tissue table is the longest).
+inline constexpr std::size_t kMostNameBytes = 256;         ///< Limit of a client's name in Hello.
+inline constexpr std::size_t kMostBytesBeforeHello = 4096;
+inline constexpr double kMostPressed_mm = 100.0;  ///< Of a placed needle: see HandTarget.
+
+// Rate limits of one connection, before and after Hello. A peer above them is read more slowly. [assumed]
+inline constexpr double kMostMessagesPerS = 4000.0;  ///< Above 1 kHz of hand targets plus heartbeats and commands.
+inline constexpr double kMostMessagesAtOnce = 1000.0;
+inline constexpr double kMostBytesPerS = 4.0 * 1024 * 1024;
+inline constexpr double kMostBytesAtOnce = 4.0 * 1024 * 1024;
+/// Limit of bytes queued for a client; further batches are dropped for it [assumed: two seconds at 1 kHz].
+inline constexpr std::size_t kMostBytesOut = 1280 * 1024;
+/// Additional queue for replies to commands, which are never dropped; a client with a full reply queue is removed.
+inline constexpr std::size_t kMostReplyBytesOut = 1 << 20;
+
+// Connections and clients. [assumed]
+inline constexpr std::size_t kMostUnauthenticated = 16;  ///< Connections that have not sent Hello.
+inline constexpr std::size_t kMostControllers = 4;       ///< Clients that request control; one of them has it.
+inline constexpr std::size_t kMostWatchers = 8;          ///< Clients that do not request control.
+inline constexpr double kMostAcceptedPerS = 100.0;
+inline constexpr double kMostAcceptedAtOnce = 16.0;
+inline constexpr double kMostRefusalsPerS = 10.0;  ///< Refusals of invalid messages, for one connection.
+inline constexpr double kMostRefusalsAtOnce = 10.0;
+inline constexpr double kHelloPatience_s = 5.0;  ///< A connection without a valid Hello is closed after this time.
 
 inline constexpr std::uint32_t kLinkVersion = 6;  ///< Both sides must have the same version.
 

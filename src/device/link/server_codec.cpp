@@ -1,7 +1,6 @@
 // The server's half of codec.h: server messages.
-#include "core/check.h"
+#include "core/result.h"
 #include "link/codec.h"
-#include "link/detail/frame.h"
 #include "link/detail/inspection.h"
 #include "link/detail/wire_sample.h"
 

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/log_limit.h"
+#include "core/log.h"
 #include "core/result.h"
-#include "link/curve_keys.h"
 #include "link/endpoint.h"
 #include "link/messages.h"
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
+#include "core/result.h"
 #include "devices/haptic_device.h"
 #include "haptics/gate/safety_gate.h"
-#include "server/detail/reading_age.h"
+#include "server/detail/pose_hold.h"
 #include "server/stylus_weighing.h"
 
 namespace trocar::server {
@@ -59,5 +61,10 @@ class DeviceTrial {
   bool is_reset_ = false;
   bool has_refused_ = false;  ///< The device did not take the last wrench.
 };
+
+/// Reason of a refused weighing and what to do. `device`: its name, for the message. The refusal must not be kNone.
+Error weigh_error(const WeighResult& result, const std::string& device);
+/// Sentence with the weight, beside that of the preset, the friction, and remarks on horizontal force and lever.
+std::string weigh_text(const WeighResult& result, const haptics::DevicePreset& preset);
 
 }  // namespace trocar::server

@@ -12,9 +12,9 @@
 #include <iterator>
 #include <utility>
 
-#include "core/files/atomic_file.h"
-#include "core/files/disk_space.h"
-#include "core/files/list_folder.h"
+#include "core/files/file_system.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "telemetry/tick_fields.h"
 
 namespace trocar::server {

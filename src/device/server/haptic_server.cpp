@@ -9,8 +9,7 @@
 
 #include "core/log.h"
 #include "core/version.h"
-#include "server/detail/control.h"
-#include "server/detail/link_thread.h"
+#include "server/detail/threads.h"
 
 namespace trocar::server {
 namespace {

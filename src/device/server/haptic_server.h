@@ -13,9 +13,9 @@
 #include "link/endpoint.h"
 #include "link/messages.h"
 #include "link/server_socket.h"
-#include "realtime/real_time_grant.h"
+#include "realtime/periodic_loop.h"
 #include "server/scene_builder.h"
-#include "server/stop_statistics.h"
+#include "server/servo_commands.h"
 
 namespace trocar::server {
 

@@ -1,5 +1,3 @@
-#include "server/detail/link_thread.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "core/log.h"
 #include "realtime/periodic_loop.h"
+#include "server/detail/threads.h"
 
 namespace trocar::server {
 namespace {

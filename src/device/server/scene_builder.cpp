@@ -6,8 +6,8 @@
 #include <limits>
 #include <new>
 
-#include "anatomy/tissue/tissue_setting.h"
-#include "haptics/coupling/coupling_limits.h"
+#include "anatomy/tissue/tissue_settings.h"
+#include "haptics/coupling/device_preset.h"
 
 namespace trocar::server {
 namespace {

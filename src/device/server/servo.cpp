@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "devices/device_wrench.h"
+#include "devices/workspace_map.h"
 #include "haptics/closed_loop/rotation.h"
-#include "haptics/gate/device_gate.h"
-#include "telemetry/tick_events.h"
+#include "haptics/gate/gate_params.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::server {
 namespace {

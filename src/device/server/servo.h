@@ -9,7 +9,7 @@
 #include "haptics/gate/safety_gate.h"
 #include "haptics/tick.h"
 #include "link/messages.h"
-#include "server/detail/reading_age.h"
+#include "server/detail/pose_hold.h"
 
 namespace trocar::server {
 

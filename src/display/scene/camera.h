@@ -3,7 +3,7 @@
 #include <numbers>
 #include <span>
 
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 
 namespace trocar::scene {
 

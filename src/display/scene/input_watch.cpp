@@ -1,10 +1,11 @@
 #include "scene/input_watch.h"
 
+#include <X11/Xlib.h>
+
 #include <algorithm>
 #include <array>
 
 // Xlib's macros (Status, None, Bool) conflict with other headers: it comes last.
-#include <X11/Xlib.h>
 
 namespace trocar::scene {
 namespace {
@@ -51,3 +52,20 @@ bool InputWatch::has_happened() {
 }
 
 }  // namespace trocar::scene
+
+// Xlib's macros (Status, None, Bool) conflict with other headers: nothing else is included here.
+
+namespace trocar::scene::detail {
+
+bool has_opengl_display() noexcept {
+  Display* display = XOpenDisplay(nullptr);
+  if (display == nullptr) return false;
+  int opcode = 0;
+  int first_event = 0;
+  int first_error = 0;
+  const bool has_glx = XQueryExtension(display, "GLX", &opcode, &first_event, &first_error) != 0;
+  XCloseDisplay(display);
+  return has_glx;
+}
+
+}  // namespace trocar::scene::detail

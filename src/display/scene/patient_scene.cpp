@@ -10,29 +10,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
-#include "scene/detail/callers_break.h"
-#include "scene/detail/display.h"
+#include "core/result.h"
 #include "scene/detail/drawing.h"
 #include "scene/detail/guide_layer.h"
-#include "scene/detail/hand_layer.h"
-#include "scene/detail/output.h"
-#include "scene/detail/pick.h"
-#include "scene/detail/plane_layer.h"
-#include "scene/detail/skin_points.h"
+#include "scene/detail/simplify.h"
 #include "scene/detail/surface_layer.h"
 #include "scene/detail/tool_layer.h"
+#include "scene/detail/volume_copy.h"
 #include "scene/detail/volume_layer.h"
+#include "scene/input_watch.h"
+#include "scene/render_patient.h"
 
 namespace trocar::scene {
 namespace {
 
-/// Minimum thickness of a needle in pixels.
-constexpr double kLeastNeedle_px = 2.6;
+constexpr double kLeastNeedle_px = 2.6;  ///< Thickness of a needle at least.
 constexpr int kPlanePixels = 320;
 constexpr int kPlanePixelsMoving = 192;
-/// A cut does not clip the needle and this distance in front of it.
-constexpr double kCutBeforeNeedle_mm = 1.5;
+constexpr double kCutBeforeNeedle_mm = 1.5;  ///< A cut does not clip the needle and what is so far in front of it.
 
 }  // namespace
 
@@ -69,8 +64,7 @@ struct PatientScene::Impl {
   /// Sets the path again, on the skin of the displayed patient.
   void lay_path() {
     static const volume::FloatGrid kNoSkin;
-    const volume::FloatGrid& skin =
-        patient ? patient->skin_distance_mm : kNoSkin;  // a reference: a conditional of values would copy it
+    const volume::FloatGrid& skin = patient ? patient->skin_distance_mm : kNoSkin;
     const Vec3 begin_P = path_P ? path_P->a : Vec3::Zero();
     guides.set_path(path_P, {entry_centre_P.value_or(begin_P), entry_radius_mm}, skin, motion);
     has_changed = true;
@@ -434,10 +428,8 @@ std::optional<Vec3> PatientScene::pick(double right, double down) {
   std::optional<double> nearest_mm;
   for (const StructureInfo& structure : s.surfaces.structures()) {
     if (structure.opacity <= 0.0 || structure.is_withheld) continue;
-    const TriangleMesh& mesh_A = s.surfaces.mesh_A(structure.name);
-    const auto hit_mm = s.motion.is_rest()
-                            ? detail::first_hit_mm(mesh_A, view.eye_P, ray_P)
-                            : detail::first_hit_mm(detail::moved_mesh(mesh_A, s.motion), view.eye_P, ray_P);
+    const TriangleMesh now_P = detail::moved_mesh(s.surfaces.mesh_A(structure.name), s.motion);
+    const auto hit_mm = detail::first_hit_mm(now_P, view.eye_P, ray_P);
     if (hit_mm && (!nearest_mm || *hit_mm < *nearest_mm)) nearest_mm = hit_mm;
   }
   return nearest_mm ? std::optional<Vec3>(view.eye_P + *nearest_mm * ray_P) : std::nullopt;

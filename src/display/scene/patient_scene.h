@@ -15,14 +15,9 @@
 #include "motion/patient_motion.h"
 #include "scene/camera.h"
 #include "scene/detail_policy.h"
-#include "scene/fingertip.h"
-#include "scene/guidance.h"
-#include "scene/mpr.h"
-#include "scene/needle_shape.h"
-#include "scene/stereo.h"
+#include "scene/scene_options.h"
 #include "scene/structure.h"
-#include "scene/transducer_shape.h"
-#include "scene/volume_preset.h"
+#include "scene/tool_shapes.h"
 
 namespace trocar::scene {
 

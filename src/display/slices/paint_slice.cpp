@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/result.h"
 #include "motion/rest_plane.h"
 
 namespace trocar::slices {
@@ -116,6 +117,67 @@ void paint_slice(const anatomy::VirtualPatient& patient, const volume::SlicePlan
   for (std::size_t n = 0; n < count; ++n) picture.pixels[n].fill(buffers.gray[n]);
   const bool shows_labels = style.label_opacity > 0.0 || style.has_outlines;
   if (shows_labels && !patient.labels.empty()) draw_labels(patient, plane, style, buffers, picture, !motion.is_rest());
+}
+
+std::string_view window_name(const Window& window) noexcept {
+  constexpr double kSame_hu = 0.5;
+  for (const WindowPreset& preset : kWindowPresets)
+    if (std::abs(preset.window.center_hu - window.center_hu) < kSame_hu &&
+        std::abs(preset.window.width_hu - window.width_hu) < kSame_hu)
+      return preset.name;
+  return {};
+}
+
+void apply_window(std::span<const float> hu, const Window& window, std::span<std::uint8_t> gray) {
+  TROCAR_CHECK(hu.size() == gray.size() && window.width_hu > 0.0);
+  const auto steps_per_hu = static_cast<float>(255.0 / window.width_hu);
+  const auto center_hu = static_cast<float>(window.center_hu);
+  constexpr float kMiddle = 127.5F + 0.5F;  // 0.5 for rounding
+  for (std::size_t n = 0; n < hu.size(); ++n) {
+    const float step = (hu[n] - center_hu) * steps_per_hu + kMiddle;
+    const float positive = step > 0.0F ? step : 0.0F;  // also NaN
+    gray[n] = static_cast<std::uint8_t>(static_cast<int>(positive < 255.0F ? positive : 255.0F));
+  }
+}
+
+namespace {
+
+constexpr std::array<double, 3> kOrange{1.0, 0.6, 0.15};
+
+std::uint8_t to_byte(double value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+}
+
+/// The CT becomes darker as the ultrasound becomes stronger, so that their sum is not saturated.
+volume::Rgb blend(const volume::Rgb& ct, double us, double share) {
+  volume::Rgb out;
+  for (std::size_t c = 0; c < 3; ++c) out[c] = to_byte((1.0 - share) * ct[c] + share * 1.4 * kOrange[c] * us);
+  return out;
+}
+
+}  // namespace
+
+void fuse_ultrasound(const PlacedUltrasound& ultrasound, const volume::SlicePlane& plane, const FusionStyle& style,
+                     volume::RgbImage& picture) {
+  TROCAR_CHECK(picture.columns == plane.columns && picture.rows == plane.rows);
+  if (style.kind == FusionKind::kOff) return;
+  const Pose X_UP = ultrasound.X_PU.inverse();
+  const Vec3 right_P = plane.step_u_P.normalized(), down_P = plane.step_v_P.normalized();
+  const double share = std::clamp(style.share, 0.0, 1.0);
+  for (int row = 0; row < plane.rows; ++row)
+    for (int column = 0; column < plane.columns; ++column) {
+      const Vec3 p_P = plane.origin_P + column * plane.step_u_P + row * plane.step_v_P;
+      const Vec3 p_U = X_UP * p_P;
+      if (volume::sample_nearest(ultrasound.imaged_U, p_U, std::uint8_t{0}) == 0) continue;
+      const double us = std::min(255.0, 255.0 * volume::sample_linear(ultrasound.gray_U, p_U) / ultrasound.white);
+      volume::Rgb& pixel = picture.at(column, row);
+      if (style.kind == FusionKind::kBlend) {
+        pixel = blend(pixel, us, share);
+        continue;
+      }
+      const double field = std::floor(right_P.dot(p_P) / style.field_mm) + std::floor(down_P.dot(p_P) / style.field_mm);
+      if ((std::lround(field) & 1) == 0) pixel.fill(to_byte(us));
+    }
 }
 
 }  // namespace trocar::slices

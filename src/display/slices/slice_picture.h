@@ -1,7 +1,12 @@
 #pragma once
 
+#include <optional>
+
+#include "anatomy/patient.h"
+#include "geometry/shapes.h"
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
+#include "volume/image.h"
 
 namespace trocar::slices {
 
@@ -26,5 +31,33 @@ struct SliceOptions {
 };
 SlicePicture make_slice_picture(const anatomy::VirtualPatient& patient, SliceOrientation orientation,
                                 const Vec3& through_P, const SliceOptions& options = {});
+
+/// Draws the orientation letters (R L A P H F) at the four edges of a slice image, as in radiology, and a scale bar
+/// with its length in mm at the lower left. Text has a dark outline. Images below 96 pixels are not changed.
+void draw_slice_legend(SlicePicture& picture);
+
+/// Length of a scale bar: the largest 1, 2 or 5 x 10^n mm that fits into `most_mm` (> 0).
+double scale_bar_mm(double most_mm) noexcept;
+
+/// Size of a thumbnail, px.
+inline constexpr int kThumbnailColumns = 320;
+inline constexpr int kThumbnailRows = 200;
+
+/// Region of a patient that a thumbnail shows. Frame P, mm.
+struct ThumbnailRegion {
+  Vec3 centre_P = Vec3::Zero();
+  std::optional<Segment> path_P;  ///< Needle path, drawn as a line from the skin to its end.
+};
+
+/// The end of the patient's first path with this path; otherwise the middle of its largest lesion, of its liver, or of
+/// the volume.
+ThumbnailRegion find_thumbnail_region(const anatomy::VirtualPatient& patient);
+
+/// An axial slice with labels through the region, and a coronal one in the corner; drawn without a graphics card.
+volume::RgbImage make_slice_thumbnail(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region);
+
+/// Paints a coronal slice through the region with a border into the lower right corner of an image of at least
+/// kThumbnailColumns x kThumbnailRows pixels.
+void add_coronal_inset(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region, volume::RgbImage& image);
 
 }  // namespace trocar::slices

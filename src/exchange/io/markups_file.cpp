@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "config/json.h"
-#include "core/files/atomic_file.h"
 #include "core/files/input_file.h"
+#include "core/files/output_file.h"
 
 namespace trocar::io {
 namespace fs = std::filesystem;

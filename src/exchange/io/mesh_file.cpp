@@ -19,13 +19,11 @@
 #include <string>
 #include <string_view>
 
-#include "core/ascii.h"
-#include "core/decimal_point.h"
-#include "core/files/atomic_file.h"
 #include "core/files/input_file.h"
-#include "core/parse_number.h"
+#include "core/files/output_file.h"
+#include "core/text.h"
 #include "io/image/detail/inflate_input.h"
-#include "io/image/detail/quiet.h"
+#include "io/image/detail/itk_image.h"
 
 namespace trocar::io {
 namespace fs = std::filesystem;

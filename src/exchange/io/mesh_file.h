@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "core/result.h"
-#include "geometry/triangle_mesh.h"
+#include "geometry/shapes.h"
 
 namespace trocar::io {
 

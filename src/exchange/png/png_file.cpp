@@ -2,8 +2,8 @@
 
 #include <png.h>
 
-#include "core/check.h"
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
+#include "core/result.h"
 
 namespace trocar::png {
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "config/detail/toml_library.h"
 #include "config/detail/toml_text.h"
-#include "config/nearest_word.h"
 #include "core/files/input_file.h"
 
 namespace trocar::config {
@@ -234,6 +234,50 @@ Result<TomlTable> parse_toml(std::string_view text, const std::string& name) {
 Result<TomlTable> load_toml(const std::filesystem::path& path) {
   TROCAR_TRY(const std::string text, read_input(path, FileKind::kToml));
   return parse_toml(text, path.string());
+}
+
+Result<SourcedNumber> read_sourced_number(const TomlTable& table, std::string_view key, Range allowed) {
+  TROCAR_TRY(const TomlTable entry, table.table(key));
+  TROCAR_TRY_STATUS(entry.check_keys({"value", "source", "range"}));
+  SourcedNumber number;
+  TROCAR_TRY(number.value, entry.number("value", allowed));
+  TROCAR_TRY(number.source, entry.string("source"));
+  if (number.source.empty()) return fail("the source is empty", entry.where(), "state where the number comes from");
+  if (entry.has("range")) {
+    TROCAR_TRY(const std::vector<double> range, entry.numbers("range", allowed));
+    if (range.size() != 2 || range[0] > number.value || number.value > range[1])
+      return fail("the range must be [low, high] around the value", entry.where(), "correct the range, or remove it");
+    number.range = Range{range[0], range[1]};
+  } else if (number.source.starts_with("assumed")) {
+    return fail("an assumed number must give its range", entry.where(), "add range = [low, high]");
+  }
+  return number;
+}
+
+std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& candidates) {
+  std::string_view nearest;
+  std::size_t smallest = word.size() + 1;
+  for (const std::string_view candidate : candidates) {
+    // Levenshtein distance, one row of the table at a time.
+    std::vector<std::size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i + 1;
+      for (std::size_t j = 0; j < candidate.size(); ++j) {
+        const std::size_t replaced = diagonal + (word[i] == candidate[j] ? 0 : 1);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+      }
+    }
+    // More changes than a third of the letters do not count as a misspelling.
+    const std::size_t allowed = std::max<std::size_t>(2, std::max(word.size(), candidate.size()) / 3);
+    if (row.back() <= allowed && row.back() < smallest) {
+      smallest = row.back();
+      nearest = candidate;
+    }
+  }
+  return nearest;
 }
 
 }  // namespace trocar::config

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,5 +66,19 @@ class TomlTable {
 /// backslashes that join lines (toml++ 3.3 aborts or misbehaves on such text). `name` is used in messages.
 Result<TomlTable> parse_toml(std::string_view text, const std::string& name);
 Result<TomlTable> load_toml(const std::filesystem::path& path);
+
+/// A number of a data table with its source: KEY = {value = 0.46, source = "…", range = [low, high]}.
+struct SourcedNumber {
+  double value = 0.0;
+  std::string source;
+  std::optional<Range> range;  ///< Measured spread or, for an assumed number, the plausible range.
+};
+
+/// Reads a SourcedNumber. Errors: outside of `allowed`, no source, or a source that begins with "assumed" without a
+/// range.
+Result<SourcedNumber> read_sourced_number(const TomlTable& table, std::string_view key, Range allowed);
+
+/// The candidate that is closest to a misspelled word, empty when none is similar.
+std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& candidates);
 
 }  // namespace trocar::config

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "config/detail/toml_library.h"
-#include "core/utf8.h"
+#include "core/text.h"
 
 namespace trocar::config {
 namespace {

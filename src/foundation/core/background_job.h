@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/cancellation.h"
 #include "core/progress.h"
 #include "core/result.h"
 #include "core/start_thread.h"

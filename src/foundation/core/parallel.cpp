@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "core/cancellation.h"
+#include "core/progress.h"
 #include "core/start_thread.h"
 
 #ifdef TROCAR_THREAD_SANITIZER

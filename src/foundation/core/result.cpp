@@ -1,5 +1,9 @@
 #include "core/result.h"
 
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+
 namespace trocar {
 inline namespace core {
 namespace {
@@ -28,5 +32,34 @@ tl::unexpected<Error> fail_usage(std::string what, std::string where, std::strin
   return tl::unexpected(Error{std::move(what), std::move(where), std::move(advice), 2});
 }
 
+}  // namespace core
+inline namespace core {
+namespace {
+
+void print_failure(const char* text) {
+  std::fprintf(stderr, "%s\n", text);
+}
+
+std::atomic<CheckHandler> check_handler{print_failure};
+
+}  // namespace
+
+CheckHandler set_check_handler(CheckHandler handler) noexcept {
+  const CheckHandler before = check_handler.exchange(handler == nullptr ? print_failure : handler);
+  return before == print_failure ? nullptr : before;
+}
+
+namespace detail {
+
+void check_failed(const char* condition, const char* file, int line) {
+  constexpr std::size_t kMostText = 1024;
+  char text[kMostText];
+  std::snprintf(text, sizeof(text), "internal error: check failed: %s — %s:%d — please report this", condition, file,
+                line);
+  check_handler.load()(text);
+  std::abort();
+}
+
+}  // namespace detail
 }  // namespace core
 }  // namespace trocar

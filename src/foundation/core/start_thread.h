@@ -8,7 +8,7 @@
 #include <thread>
 #include <type_traits>
 
-#include "core/cancellation.h"
+#include "core/progress.h"
 #include "core/result.h"
 
 namespace trocar {

@@ -13,7 +13,7 @@
 
 #include "core/result.h"
 #include "database/database_url.h"
-#include "database/sqlite_journal.h"
+#include "database/sqlite.h"
 
 namespace trocar::database {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/ascii.h"
+#include "core/text.h"
 
 namespace trocar::database {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <numbers>
 
 #include "geometry/vec.h"
@@ -39,6 +40,19 @@ Pose needle_pose(const Vec3& tip_A, const Vec3& axis_A) noexcept;
 /// Angle between two directions, 0..pi rad.
 double angle_between_rad(const Vec3& a, const Vec3& b) noexcept;
 inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+}  // namespace geometry
+inline namespace geometry {
+
+/// The components of a quaternion in the order w, x, y, z, as in stored records. Real-time safe.
+inline std::array<double, 4> to_wxyz(const Eigen::Quaterniond& q) noexcept {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+/// The quaternion of stored components; not normalised. Real-time safe.
+inline Eigen::Quaterniond from_wxyz(const std::array<double, 4>& wxyz) noexcept {
+  return {wxyz[0], wxyz[1], wxyz[2], wxyz[3]};
+}
 
 }  // namespace geometry
 }  // namespace trocar

@@ -6,8 +6,7 @@
 #include <array>
 
 #include "config/json.h"
-#include "core/files/data_dir.h"
-#include "core/files/list_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::language {
 namespace {

@@ -8,8 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "core/files/atomic_file.h"
-#include "core/files/private_file.h"
+#include "core/files/output_file.h"
 
 namespace trocar::signing {
 namespace fs = std::filesystem;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -20,5 +23,10 @@ std::string token_digest(std::string_view token);
 
 /// Compares two texts of the same length in a time that does not depend on their bytes. False for different lengths.
 bool is_same_secret(std::string_view a, std::string_view b) noexcept;
+
+/// SHA-256 as 64 hexadecimal digits, the same as of the program sha256sum.
+std::string sha256(std::string_view bytes);
+/// That of a file, read in pieces. Errors: those of InputFile for a session.
+Result<std::string> sha256_of_session(const std::filesystem::path& file);
 
 }  // namespace trocar::signing

@@ -3,10 +3,54 @@
 #include <array>
 #include <cstdint>
 
+#include "geometry/pose.h"
 #include "geometry/vec.h"
-#include "telemetry/gate_state.h"
 
 namespace trocar::telemetry {
+
+/// Pose of a tool in P, X_PN or X_PT, as the input of a tick and in its record. The rotation is a quaternion: a
+/// rotation matrix that is stored as a quaternion is not restored bit-identically, whereas a replay of recorded tool
+/// poses is bit-identical.
+struct ToolPose {
+  std::array<double, 4> rotation_wxyz{1, 0, 0, 0};  ///< Unit quaternion.
+  Vec3 p_mm = Vec3::Zero();
+
+  /// True if all numbers are finite and the quaternion has length 1.
+  bool is_valid() const noexcept;
+  Pose pose() const noexcept;
+};
+
+ToolPose to_tool_pose(const Pose& X_PTool) noexcept;
+
+/// The reason why the safety gate gives zero force until a reset. The first fault stays latched.
+enum class GateFault : std::uint8_t {
+  kNone,
+  kNotFinite,         ///< The wrench or the device's reading was NaN, infinite or beyond all limits.
+  kDeviceLost,        ///< Unplugged, or a write was refused.
+  kDeviceSilent,      ///< No fresh reading for longer than max_unread_s.
+  kRunaway,           ///< Faster than brake_mm_per_s for longer than max_runaway_s.
+  kEncoderStuck,      ///< Force without motion by a single encoder count for longer than the caller allows.
+  kLoopStalled,       ///< One period was longer than the caller allows.
+  kRequested,         ///< The stop button was pressed.
+  kLoopSlow,          ///< The periods were longer than the coupling allows, for max_slow_s together.
+  kImpossibleMotion,  ///< The reading moved further in one period than a hand can move.
+  kVibration,         ///< The device vibrated under the gate's force.
+};
+inline constexpr GateFault kLastGateFault = GateFault::kVibration;
+const char* to_string(GateFault fault) noexcept;
+
+/// The mode of the safety gate.
+enum class GateMode : std::uint8_t {
+  kOff,      ///< No forces requested: zero.
+  kWaiting,  ///< Zero force until the requested force is small.
+  kRising,   ///< The force ramps up.
+  kOn,
+  kFading,  ///< Client timeout, or forces no longer requested: ramps to zero, or is at zero.
+  kFault,   ///< Latched; ramps to zero within fault_ramp_s, then zero.
+  kAbsent,  ///< No gate (attempt without a server). Never a mode of the gate itself.
+};
+inline constexpr GateMode kLastGateMode = GateMode::kAbsent;
+const char* to_string(GateMode mode) noexcept;
 
 /// Phase of the needle's insertion.
 enum class InsertionPhase : std::uint8_t { kOutside, kLoading, kInserted, kRetracting };
@@ -96,5 +140,33 @@ inline void set_at_rest(TickSample& sample) noexcept {
 double axial_resistance_n(const TickSample& sample) noexcept;
 /// The part of the resistance that acts on the tip: the load of a layer before its puncture.
 double tip_load_n(const TickSample& sample) noexcept;
+
+/// Pose of the device's tool at a tick: X_PN, or X_PT of a transducer. Without a rotation: identity rotation.
+Pose device_pose(const TickSample& sample) noexcept;
+/// Pose of the virtual needle: its tip and axis, with the device's roll.
+Pose felt_needle(const TickSample& sample) noexcept;
+/// Where a needle is placed after an interruption, so that it goes on where it was (physics.md S1): the virtual
+/// needle's pose, and how far its device was ahead of it because tissue was pressed in and the coupling stretched. A
+/// tip that presses on a layer is drawn back to that layer's surface, one on unpierced skin to outside it: being placed
+/// there pierces neither.
+struct NeedlePlace {
+  Pose X_PN;
+  double pressed_mm = 0.0;  ///< >= 0; 0 outside and on unpierced skin.
+};
+NeedlePlace needle_place(const TickSample& sample) noexcept;
+/// True if the tip is in the body: below the skin, and the skin has given way.
+bool is_in_body(const TickSample& sample) noexcept;
+/// Where the tip is in the anatomy at rest (A) as far as layers have given way: in front of a layer that it presses in.
+Vec3 pierced_rest_tip_mm(const TickSample& sample) noexcept;
+/// Pose of the virtual transducer, whose axis is y of T.
+Pose felt_probe(const TickSample& sample) noexcept;
+
+/// The event that reports a limit.
+constexpr TickEvent limit_event(LimitReason reason) noexcept {
+  return {EventKind::kLimit, static_cast<std::uint8_t>(reason)};
+}
+
+/// Puts an event into the first free entry of a sample; false if there is none. Real-time safe.
+bool add_event(TickSample& sample, TickEvent event) noexcept;
 
 }  // namespace trocar::telemetry

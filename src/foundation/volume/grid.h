@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "geometry/vec.h"
 
 namespace trocar::volume {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "volume/detail/column_range.h"
 #include "volume/detail/sampling_kernels.h"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "anatomy/derive/derive_choice.h"
+#include "anatomy/derive/derive_structures.h"
 #include "anatomy/patient.h"
 #include "anatomy/plausibility/anatomy_finding.h"
 #include "core/progress.h"

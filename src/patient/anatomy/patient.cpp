@@ -1,10 +1,12 @@
 #include "anatomy/patient.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
 
-#include "core/hash.h"
+#include "core/random.h"
 #include "volume/sampling.h"
 
 namespace trocar::anatomy {
@@ -58,6 +60,70 @@ std::string hash_patient(const VirtualPatient& patient) {
 const Label* find_label(const VirtualPatient& patient, const Vec3& p_P) noexcept {
   const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
   return id == 0 ? nullptr : patient.label_table.find(id);
+}
+
+const Label* LabelTable::find(std::uint8_t id) const noexcept {
+  const auto it = std::lower_bound(labels.begin(), labels.end(), id,
+                                   [](const Label& label, std::uint8_t wanted) { return label.id < wanted; });
+  return it != labels.end() && it->id == id ? &*it : nullptr;
+}
+
+const Label* LabelTable::find(std::string_view name) const noexcept {
+  const auto it = std::find_if(labels.begin(), labels.end(), [&](const Label& label) { return label.name == name; });
+  return it != labels.end() ? &*it : nullptr;
+}
+
+std::array<std::uint8_t, 256> lesions_as_organs(const LabelTable& table) noexcept {
+  constexpr std::string_view kLesion = "_lesion";
+  std::array<std::uint8_t, 256> organ_of{};
+  for (std::size_t id = 0; id < organ_of.size(); ++id) organ_of[id] = static_cast<std::uint8_t>(id);
+  for (const Label& label : table.labels) {
+    const std::string_view tissue = label.tissue;
+    if (!tissue.ends_with(kLesion)) continue;
+    const std::string_view around = tissue.substr(0, tissue.size() - kLesion.size());
+    const auto organ = std::find_if(table.labels.begin(), table.labels.end(),
+                                    [&](const Label& other) { return other.tissue == around; });
+    organ_of[label.id] = organ != table.labels.end() ? organ->id : std::uint8_t{0};
+  }
+  return organ_of;
+}
+
+namespace {
+
+struct PostureRow {
+  std::string_view name, words;
+  std::array<double, 3> down_P;
+};
+
+constexpr std::array<PostureRow, 5> kRows{{{"supine", "lying on the back", {0, 1, 0}},
+                                           {"prone", "lying on the belly", {0, -1, 0}},
+                                           {"left-lateral", "lying on the left side", {1, 0, 0}},
+                                           {"right-lateral", "lying on the right side", {-1, 0, 0}},
+                                           {"sitting", "sitting", {0, 0, -1}}}};
+
+const PostureRow& row_of(Posture posture) {
+  return kRows[static_cast<std::size_t>(posture)];
+}
+
+}  // namespace
+
+std::string_view posture_name(Posture posture) {
+  return row_of(posture).name;
+}
+
+std::string_view posture_words(Posture posture) {
+  return row_of(posture).words;
+}
+
+std::optional<Posture> find_posture(std::string_view name) {
+  for (std::size_t n = 0; n < kRows.size(); ++n)
+    if (kRows[n].name == name) return static_cast<Posture>(n);
+  return std::nullopt;
+}
+
+Vec3 gravity_P(Posture posture) {
+  const auto& down = row_of(posture).down_P;
+  return {down[0], down[1], down[2]};
 }
 
 }  // namespace trocar::anatomy

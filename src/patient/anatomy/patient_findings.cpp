@@ -5,7 +5,7 @@
 
 #include "anatomy/plausibility/judge_anatomy.h"
 #include "anatomy/repair/repair_segmentation.h"
-#include "anatomy/tissue/plausible_hu.h"
+#include "anatomy/tissue/hounsfield.h"
 
 namespace trocar::anatomy {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "anatomy/patient.h"
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 #include "motion/patient_motion.h"
 
 namespace trocar::anatomy {

@@ -10,7 +10,7 @@
 
 #include "config/toml.h"
 #include "config/toml_writer.h"
-#include "core/hash.h"
+#include "core/random.h"
 
 namespace trocar::motion {
 namespace {

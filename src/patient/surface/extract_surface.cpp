@@ -10,7 +10,6 @@
 
 #include "core/parallel.h"
 #include "surface/detail/contour.h"
-#include "surface/detail/mesh_repair.h"
 
 namespace trocar::surface {
 namespace {

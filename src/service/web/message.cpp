@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "config/json.h"
-#include "core/ascii.h"
+#include "core/text.h"
 
 namespace trocar::web {
 namespace {

@@ -1,5 +1,9 @@
 #include "web/repository_pool.h"
 
+#include <utility>
+
+#include "results/repository.h"
+
 namespace trocar::web {
 
 Result<std::unique_ptr<RepositoryPool>> RepositoryPool::open(const database::DatabaseUrl& url,
@@ -27,6 +31,25 @@ void RepositoryPool::give_back(results::Repository& repository) {
     free_.push_back(&repository);
   }
   is_returned_.notify_one();
+}
+
+bool DeletionWatch::is_due(TimePoint now) {
+  constexpr std::chrono::seconds kInterval{1};
+  const std::lock_guard lock(time_mutex_);
+  if (has_looked_ && now < looked_ + kInterval && now >= looked_) return false;
+  has_looked_ = true;
+  looked_ = now;
+  return true;
+}
+
+Result<bool> DeletionWatch::look(results::Repository& repository) {
+  const std::lock_guard lock(look_mutex_);
+  TROCAR_TRY(std::string last, results::last_deletion(repository));
+  const bool has_deleted = last.compare(last_) != 0;
+  last_ = std::move(last);
+  has_to_erase_ = has_to_erase_ || has_deleted;
+  if (has_to_erase_) has_to_erase_ = !results::erase_deleted(repository, std::chrono::milliseconds(0)).value_or(false);
+  return has_deleted;
 }
 
 }  // namespace trocar::web

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "core/result.h"
@@ -40,6 +42,24 @@ class RepositoryPool {
   std::vector<results::Repository*> free_;
   std::mutex mutex_;
   std::condition_variable is_returned_;
+};
+
+/// Sees once a second whether any program has deleted something, and takes it out of the write-ahead log as soon as
+/// nobody reads by it. Thread-safe.
+class DeletionWatch {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  /// True for one thread a second.
+  bool is_due(TimePoint now);
+  /// Whether something was deleted since the last look.
+  Result<bool> look(results::Repository& repository);
+
+ private:
+  std::mutex time_mutex_, look_mutex_;
+  bool has_looked_ = false, has_to_erase_ = false;
+  TimePoint looked_;
+  std::string last_;  ///< results::last_deletion.
 };
 
 }  // namespace trocar::web

@@ -6,17 +6,14 @@
 #include <utility>
 
 #include "core/log.h"
-#include "core/utf8.h"
+#include "core/text.h"
 #include "signing/password.h"
 #include "signing/token.h"
 #include "web/api/route.h"
-#include "web/deletion_watch.h"
-#include "web/security/client_address.h"
-#include "web/security/log_text.h"
+#include "web/repository_pool.h"
 #include "web/security/request_origin.h"
-#include "web/security/session_cookie.h"
 #include "web/static_files.h"
-#include "web/transport/listen_address.h"
+#include "web/transport/http_server.h"
 
 namespace trocar::web {
 namespace {

@@ -10,7 +10,7 @@
 #include "database/database_url.h"
 #include "signing/password.h"
 #include "web/message.h"
-#include "web/security/moment.h"
+#include "web/security/login_throttle.h"
 
 namespace trocar::web {
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/files/folders.h"
 #include "core/files/input_file.h"
-#include "core/files/list_folder.h"
-#include "signing/sha256.h"
+#include "signing/token.h"
 
 namespace trocar::web {
 namespace {

@@ -12,10 +12,9 @@
 #include "geometry/pose.h"
 #include "haptics/contact/contact_face.h"
 #include "haptics/insertion/insertion_law.h"
-#include "haptics/insertion/path_constraint.h"
 #include "haptics/needle_geometry.h"
 #include "haptics/proxy/needle_beam.h"
-#include "motion/motion_clock.h"
+#include "motion/patient_motion.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::haptics {
@@ -155,5 +154,18 @@ inline bool is_read_from_ct(const HapticScene& scene, const TissueAt& here) noex
   if (here.label == 0) return here.tissue != 0 && here.tissue != scene.skin;
   return scene.tissues[here.tissue].is_read_from_ct;
 }
+
+/// The patient at rest.
+inline const motion::PatientMotion kAtRest{};
+
+/// The patient as a tick sees it: constant data in the anatomy at rest (frame A), and where it is now (frame P). Forces
+/// and distances of the laws are in P; tissue is looked up in A. A scene alone: the patient at rest.
+struct PatientNow {
+  const HapticScene& scene;
+  const motion::PatientMotion& motion;
+
+  PatientNow(const HapticScene& the_scene, const motion::PatientMotion& the_motion = kAtRest) noexcept
+      : scene(the_scene), motion(the_motion) {}
+};
 
 }  // namespace trocar::haptics

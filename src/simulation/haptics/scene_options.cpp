@@ -5,7 +5,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "core/parse_number.h"
+#include "core/text.h"
 
 namespace trocar::haptics {
 namespace {

@@ -5,7 +5,6 @@
 #include "haptics/insertion/needle_step.h"
 #include "motion/patient_motion.h"
 #include "telemetry/tick_sample.h"
-#include "telemetry/tool_pose.h"
 
 namespace trocar::haptics {
 

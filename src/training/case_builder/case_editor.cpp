@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "case_builder/case_edits.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "tasks/plan.h"
 
 namespace trocar::case_builder {

@@ -7,12 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "case_builder/case_history.h"
+#include "case_builder/case_draft.h"
+#include "case_builder/case_files.h"
 #include "case_builder/checks.h"
-#include "case_builder/draft_patient.h"
-#include "case_builder/force_preview.h"
-#include "case_builder/import_case.h"
-#include "case_builder/save_case.h"
 #include "case_builder/ultrasound.h"
 #include "core/background_job.h"
 

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "anatomy/plausibility/judge_anatomy.h"
-#include "case_builder/detail/in_volume.h"
+#include "case_builder/case_draft.h"
 #include "tasks/assess_path.h"
 
 namespace trocar::case_builder {
@@ -186,6 +187,35 @@ Result<CaseDraft> remove_landmark(CaseDraft draft, std::size_t row) {
     return fail("there is no such landmark", "landmarks", "choose a landmark of the list");
   draft.landmarks.erase(draft.landmarks.begin() + static_cast<std::ptrdiff_t>(row));
   return draft;
+}
+
+std::span<const std::string_view> landmark_names() noexcept {
+  static constexpr std::array<std::string_view, 25> kNames{"suprasternal notch",
+                                                           "xiphoid process",
+                                                           "right costal margin, mid-clavicular line",
+                                                           "left costal margin, mid-clavicular line",
+                                                           "right mid-axillary line, eighth intercostal space",
+                                                           "right mid-axillary line, tenth rib",
+                                                           "umbilicus",
+                                                           "right anterior superior iliac spine",
+                                                           "left anterior superior iliac spine",
+                                                           "right iliac crest",
+                                                           "left iliac crest",
+                                                           "pubic symphysis",
+                                                           "spinous process C7",
+                                                           "spinous process T12",
+                                                           "spinous process L1",
+                                                           "spinous process L2",
+                                                           "spinous process L3",
+                                                           "spinous process L4",
+                                                           "spinous process L5",
+                                                           "interspinous space L3/L4",
+                                                           "interspinous space L4/L5",
+                                                           "right twelfth rib",
+                                                           "left twelfth rib",
+                                                           "right posterior superior iliac spine",
+                                                           "left posterior superior iliac spine"};
+  return kNames;
 }
 
 }  // namespace trocar::case_builder

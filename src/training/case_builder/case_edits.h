@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "case_builder/case_draft.h"
 #include "core/result.h"
@@ -45,5 +47,8 @@ Result<CaseDraft> set_landmark(CaseDraft draft, const std::string& name, const V
 /// Names are unique and not empty. The landmark of that name in the ultrasound is renamed, too.
 Result<CaseDraft> rename_landmark(CaseDraft draft, std::size_t row, const std::string& name);
 Result<CaseDraft> remove_landmark(CaseDraft draft, std::size_t row);
+
+/// Common clinical names of landmarks that are visible or palpable on the skin: trunk from head to feet, then the back.
+std::span<const std::string_view> landmark_names() noexcept;
 
 }  // namespace trocar::case_builder

@@ -8,7 +8,7 @@
 
 #include "anatomy/patient_findings.h"
 #include "anatomy/plausibility/judge_anatomy.h"
-#include "case_builder/detail/in_volume.h"
+#include "case_builder/case_draft.h"
 #include "case_builder/ultrasound.h"
 #include "tasks/assess_path.h"
 #include "volume/sampling.h"
@@ -72,10 +72,10 @@ class Checks {
   }
 
   void check_labels() {
-    const std::vector<anatomy::Finding> findings = anatomy::patient_findings(patient_, statistics_);
-    for (const anatomy::Finding& finding : draft_.imported->findings)
+    const std::vector<anatomy::Finding> of_patient = anatomy::patient_findings(patient_, statistics_);
+    for (const anatomy::Finding& finding : draft_.imported->label_findings)
       warn(CaseStep::kLabels, finding.text, finding.place_P);
-    for (const anatomy::Finding& finding : findings) warn(CaseStep::kLabels, finding.text, finding.place_P);
+    for (const anatomy::Finding& finding : of_patient) warn(CaseStep::kLabels, finding.text, finding.place_P);
     const auto& findings = draft_.imported->findings;
     for (const anatomy::AnatomyFinding& finding : findings)
       if (!anatomy::is_confirmed(draft_.provenance, finding.name)) warn(CaseStep::kImport, finding.text);
@@ -83,7 +83,7 @@ class Checks {
       const auto is_same = [&](const anatomy::Finding& finding) { return finding.text == warning; };
       const auto is_finding = [&](const anatomy::AnatomyFinding& finding) { return warning.starts_with(finding.text); };
       const bool is_told =
-          std::any_of(findings.begin(), findings.end(), is_same) ||
+          std::any_of(of_patient.begin(), of_patient.end(), is_same) ||
           std::any_of(findings.begin(), findings.end(), is_finding) ||
           warning.starts_with("cut off by the border of the CT");  // the same finding in different words
       if (!is_told) warn(CaseStep::kImport, warning);

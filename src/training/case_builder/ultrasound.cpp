@@ -4,15 +4,15 @@
 
 #include <algorithm>
 
-#include "case_builder/detail/in_volume.h"
-#include "core/fail_at.h"
+#include "case_builder/case_draft.h"
+#include "core/result.h"
 #include "io/image/image_file.h"
 #include "io/markups_file.h"
-#include "io/patient/patient_panorama.h"
+#include "io/patient/patient_extras.h"
 #include "io/sequence/sequence_file.h"
 #include "io/sequence/transform_file.h"
 #include "registration/ct_ultrasound/rigid_registration.h"
-#include "registration/intensity/bright_gray.h"
+#include "registration/intensity/gray_levels.h"
 #include "registration/shadow/shadow_mask.h"
 #include "ultrasound/sweep/freehand.h"
 

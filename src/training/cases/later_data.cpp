@@ -9,12 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "core/cancellation.h"
-#include "core/live/live_thread.h"
+#include "core/live/live_schedule.h"
 #include "core/log.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "core/start_thread.h"
-#include "io/patient/open_patient.h"
 #include "io/patient/patient_cache.h"
 #include "surface/extract_surface.h"
 

@@ -12,7 +12,7 @@
 
 #include "anatomy/patient.h"
 #include "core/background_job.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 #include "ultrasound/tissue/acoustic_scene.h"
 
 namespace trocar::cases {

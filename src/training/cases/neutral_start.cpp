@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "cases/detail/start_view.h"
-#include "core/files/data_dir.h"
-#include "ultrasound/probe/face_fit.h"
+#include "cases/transducer_start.h"
+#include "core/files/folders.h"
+#include "ultrasound/probe/probe_contact.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "volume/sampling.h"
 

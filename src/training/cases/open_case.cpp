@@ -7,14 +7,13 @@
 #include <optional>
 #include <utility>
 
-#include "cases/image_plane.h"
-#include "cases/needle_geometry.h"
+#include "cases/imaging.h"
+#include "cases/scene_request.h"
 #include "cases/transducer_start.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/parallel.h"
-#include "io/patient/open_patient.h"
 #include "io/patient/patient_cache.h"
-#include "io/patient/patient_panorama.h"
+#include "io/patient/patient_extras.h"
 
 namespace trocar::cases {
 namespace {

@@ -1,28 +1,61 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "anatomy/patient.h"
 #include "cases/force_curve.h"
 #include "cases/later_data.h"
 #include "cases/neutral_start.h"
-#include "cases/open_parts.h"
 #include "cases/prepare_case.h"
 #include "core/background_job.h"
 #include "geometry/pose.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 #include "metrics/metric.h"
 #include "ultrasound/doppler/flow_on_demand.h"
-#include "ultrasound/panorama/panorama_on_demand.h"
+#include "ultrasound/panorama/panorama.h"
 #include "ultrasound/probe/transducer.h"
 
 namespace trocar::cases {
+
+/// One part of opening a case and its duration. Parts run in parallel: the durations do not add up to the whole.
+struct OpenPart {
+  std::string name;  ///< "patient", "acoustic scene".
+  double seconds = 0.0;
+};
+
+/// Measures the parts. Any thread may measure.
+class OpenParts {
+ public:
+  /// Calls `work` and notes its duration; returns its result.
+  template <class Work>
+  auto measure(std::string_view name, const Work& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto result = work();
+    add(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    return result;
+  }
+  std::vector<OpenPart> take() {
+    const std::lock_guard lock(mutex_);
+    return std::move(parts_);
+  }
+
+ private:
+  void add(std::string_view name, double seconds) {
+    const std::lock_guard lock(mutex_);
+    parts_.push_back({std::string(name), seconds});
+  }
+  std::mutex mutex_;
+  std::vector<OpenPart> parts_;
+};
 
 /// Choice of a trainee on the start page.
 struct CaseChoice {

@@ -7,11 +7,9 @@
 
 #include "anatomy/known_structures.h"
 #include "anatomy/phantom/phantom.h"
-#include "anatomy/structure_pattern.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "core/log.h"
-#include "tasks/allowed_needles.h"
 #include "tasks/assess_path.h"
 #include "tasks/fit_to_patient.h"
 

@@ -9,9 +9,9 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "core/progress.h"
 #include "core/result.h"
+#include "tasks/action.h"
 #include "tasks/needle.h"
 #include "tasks/plan.h"
-#include "tasks/substance.h"
 #include "tasks/task.h"
 #include "xray/contrast/duct_tree.h"
 

@@ -1,8 +1,7 @@
 #include "cases/scene_request.h"
 
 #include <cmath>
-
-#include "cases/needle_geometry.h"
+#include <numbers>
 
 namespace trocar::cases {
 
@@ -48,6 +47,17 @@ link::SetParameters tissue_parameters(const std::vector<anatomy::TissueSetting>&
     parameters.tissues->push_back({setting.row, setting.key, is_never ? std::nullopt : std::optional(setting.value)});
   }
   return parameters;
+}
+
+haptics::NeedleGeometry needle_geometry(const tasks::Needle& needle) noexcept {
+  haptics::NeedleGeometry geometry;
+  geometry.radius_mm = 0.5 * needle.outer_diameter_mm;
+  geometry.length_mm = needle.length_mm;
+  geometry.inner_radius_mm = 0.5 * needle.inner_diameter_mm;
+  geometry.stylet_radius_mm = 0.5 * needle.stylet_diameter_mm;
+  geometry.bevel_rad = needle.bevel_deg * std::numbers::pi / 180.0;
+  geometry.bevel_share = needle.bevel_share;
+  return geometry;
 }
 
 }  // namespace trocar::cases

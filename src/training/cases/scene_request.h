@@ -3,9 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "anatomy/tissue/tissue_setting.h"
+#include "anatomy/tissue/tissue_settings.h"
 #include "cases/prepare_case.h"
+#include "haptics/needle_geometry.h"
 #include "link/messages.h"
+#include "tasks/needle.h"
 
 namespace trocar::cases {
 
@@ -27,5 +29,8 @@ link::SetParameters tissue_parameters(const std::vector<anatomy::TissueSetting>&
 /// patient's left, z up). The origin is the grip with the needle inserted half-way, so that a centred workspace covers
 /// the whole puncture.
 Pose room_in_patient(const Segment& path_P, double needle_length_mm) noexcept;
+
+/// Geometry of a listed needle for the force models: of steel, with its grip at the hub.
+haptics::NeedleGeometry needle_geometry(const tasks::Needle& needle) noexcept;
 
 }  // namespace trocar::cases

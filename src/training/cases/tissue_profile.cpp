@@ -6,8 +6,8 @@
 
 #include "config/toml.h"
 #include "config/toml_writer.h"
-#include "core/files/atomic_file.h"
-#include "core/files/list_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 
 namespace trocar::cases {
 namespace {

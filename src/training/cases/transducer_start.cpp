@@ -7,9 +7,8 @@
 #include <numbers>
 #include <optional>
 
-#include "cases/detail/start_view.h"
-#include "core/files/data_dir.h"
-#include "ultrasound/probe/face_fit.h"
+#include "core/files/folders.h"
+#include "ultrasound/probe/probe_contact.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "volume/sampling.h"
 

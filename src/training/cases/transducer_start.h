@@ -5,7 +5,7 @@
 #include "anatomy/patient.h"
 #include "core/result.h"
 #include "geometry/pose.h"
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 #include "ultrasound/probe/transducer.h"
 
 namespace trocar::cases {
@@ -26,3 +26,14 @@ struct TransducerStart {
 Result<TransducerStart> find_transducer_start(const anatomy::VirtualPatient& patient, const Segment& path_P);
 
 }  // namespace trocar::cases
+
+namespace trocar::cases::detail {
+
+// A transducer that the program places on the skin before an attempt.
+inline constexpr const char* kLesionView = "liver-lesion";
+inline constexpr int kLines = 33;         ///< Scanlines of the examined image.
+inline constexpr double kSlope_mm = 6.0;  ///< The skin's normal is averaged over a patch of this size.
+inline constexpr double kPress_mm = 3.0;  ///< Depth of the face in the skin.
+inline constexpr double kTouching = 0.8;  ///< Share of the scanlines that must have contact.
+
+}  // namespace trocar::cases::detail

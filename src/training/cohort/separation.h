@@ -1,13 +1,32 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
-#include "cohort/rank_sum.h"
-#include "cohort/summary.h"
+#include "cohort/learning_curve.h"
 #include "core/result.h"
 
 namespace trocar::cohort {
+
+/// Rank sum test of two independent groups (Wilcoxon 1945, Mann and Whitney 1947).
+struct RankSumTest {
+  double u = 0.0;  ///< Pairs in which the value of the first group is larger; ties count half. 0..n1·n2.
+  double p = 1.0;  ///< Two-sided: probability of a U at least as far from n1·n2 / 2 if both groups are alike.
+  bool is_exact = false;
+};
+
+/// The smallest exact two-sided p that groups of these sizes (≥ 1) can give: 2 / C(n1 + n2, n1), at most 1. Without
+/// ties; values with ties may give a smaller one.
+double smallest_rank_sum_p(std::size_t n1, std::size_t n2);
+
+/// Groups of at most so many people together are tested exactly.
+inline constexpr std::size_t kMostExactPeople = 50;
+
+/// Exact: all assignments of the observed values (ties included) to the groups. Otherwise the normal approximation with
+/// corrections for continuity and ties. Errors: a group without values, a value that is not finite.
+Result<RankSumTest> rank_sum_test(std::span<const double> first, std::span<const double> second,
+                                  std::size_t most_exact = kMostExactPeople);
 
 /// How well one value (a metric, the score) separates experts from novices.
 struct Separation {
@@ -40,5 +59,28 @@ const char* to_string(Correction correction) noexcept;
 /// p values after the correction, in the same order, at most 1: a metric is found at a level if its corrected p is not
 /// above it. Precondition: all p within 0 and 1.
 std::vector<double> corrected_p(std::span<const double> p, Correction correction);
+
+/// Normal distribution fitted to the scores of a group.
+struct ScoreDistribution {
+  std::size_t people = 0;
+  double mean = 0.0;
+  double sd = 0.0;  ///< Of a sample (n − 1).
+};
+
+/// Pass mark by contrasting groups (Jørgensen, Konge, Subhi 2018): the score between both means at which the fitted
+/// densities are equal. From this score on, a person passes.
+struct PassMark {
+  double value = 0.0;
+  ScoreDistribution experts, novices;
+  double expected_false_pass = 0.0;  ///< Share of novices at or above the mark, by their fitted distribution.
+  double expected_false_fail = 0.0;  ///< Share of experts below it.
+  std::size_t false_passes = 0;      ///< Novices at or above the mark.
+  std::size_t false_fails = 0;       ///< Experts below it.
+};
+
+/// One score a person, higher is better. Errors, each with the reason: fewer than two people in a group, a score that
+/// is not finite, a group in which all scores are equal, experts who are not better, distributions that do not cross
+/// between their means.
+Result<PassMark> contrasting_groups(std::span<const double> experts, std::span<const double> novices);
 
 }  // namespace trocar::cohort

@@ -5,15 +5,15 @@
 #include <algorithm>
 
 #include "config/json.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/files/input_file.h"
+#include "core/files/output_file.h"
 #include "core/version.h"
 #include "exams/exam_body.h"
 #include "haptics/force_version.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 #include "learning/history.h"
-#include "signing/sha256.h"
+#include "signing/token.h"
 #include "storage/session_file.h"
 
 namespace trocar::exams {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/result.h"
+#include "exams/exam_body.h"
 #include "exams/exam_seal.h"
-#include "exams/seen_bodies.h"
 
 namespace trocar::exams {
 

@@ -9,12 +9,11 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "config/json.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/files/input_file.h"
-#include "core/files/list_folder.h"
-#include "learning/past_attempt.h"
-#include "signing/sha256.h"
+#include "core/files/output_file.h"
+#include "learning/history.h"
+#include "signing/token.h"
 #include "storage/score_json.h"
 
 namespace trocar::exams {

@@ -6,7 +6,7 @@
 #include "config/json_fwd.h"
 #include "core/result.h"
 #include "signing/signing_key.h"
-#include "storage/session_summary.h"
+#include "storage/session_file.h"
 
 namespace trocar::exams {
 

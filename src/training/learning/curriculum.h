@@ -9,7 +9,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "core/result.h"
-#include "learning/past_attempt.h"
+#include "learning/history.h"
 #include "tasks/task.h"
 
 namespace trocar::learning {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "learning/curriculum.h"
-#include "learning/past_attempt.h"
+#include "learning/history.h"
 
 namespace trocar::learning {
 

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "tasks/active_time.h"
+#include "tasks/action.h"
 #include "tasks/plan.h"
 #include "tasks/task.h"
 #include "telemetry/tick_sample.h"
@@ -38,5 +39,33 @@ AttemptMetrics measure_attempt(const anatomy::VirtualPatient& patient, const ana
                                const tasks::PlannedPath& plan, std::span<const telemetry::TickSample> samples,
                                std::optional<std::size_t> given_end,
                                std::span<const tasks::Interruption> interruptions = {});
+
+/// The bevel at the punctures of the layer whose fibres it has to part (tasks::BevelRule); of several the worst.
+/// Frame P.
+class WorstBevel {
+ public:
+  struct Puncture {
+    double to_fibres_deg = 0.0;  ///< 0..90, see tasks::bevel_to_fibres_deg.
+    double time_s = 0.0;
+  };
+
+  /// Task and patient outlive it. `layer`: id of the rule's layer in events; empty: events do not know it.
+  WorstBevel(const tasks::Task& task, const anatomy::VirtualPatient& patient, std::optional<std::uint8_t> layer)
+      : task_(&task), patient_(&patient), layer_(layer) {}
+
+  /// `R_PN`: the needle with its roll, +y to the bevel's face.
+  void step(double time_s, const Vec3& tip_P, const Mat3& R_PN, const telemetry::TickEvents& events);
+
+  bool has_punctured() const noexcept { return has_punctured_; }  ///< The layer, with or without fibres there.
+  /// Empty: the task has no such rule, the layer was not punctured, or the patient lacks the fibres.
+  const std::optional<Puncture>& worst() const noexcept { return worst_; }
+
+ private:
+  const tasks::Task* task_;
+  const anatomy::VirtualPatient* patient_;
+  std::optional<std::uint8_t> layer_;
+  bool has_punctured_ = false;
+  std::optional<Puncture> worst_;
+};
 
 }  // namespace trocar::metrics

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "metrics/moment.h"
+#include "metrics/metric.h"
 #include "tasks/action.h"
-#include "tasks/active_time.h"
 #include "tasks/needle.h"
 #include "tasks/task.h"
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "metrics/detail/body.h"
 
 namespace trocar::metrics {

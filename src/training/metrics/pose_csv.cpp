@@ -10,9 +10,8 @@
 #include <string_view>
 
 #include "core/files/input_file.h"
-#include "core/parse_number.h"
-#include "geometry/quaternion.h"
-#include "metrics/detail/csv_fields.h"
+#include "core/text.h"
+#include "geometry/pose.h"
 #include "metrics/detail/pose_events.h"
 #include "telemetry/tick_fields.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "metrics/moment.h"
+#include "metrics/metric.h"
 
 namespace trocar::metrics {
 

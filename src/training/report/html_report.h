@@ -6,7 +6,7 @@
 #include "anatomy/patient.h"
 #include "core/result.h"
 #include "language/language.h"
-#include "report/report_story.h"
+#include "report/session_analysis.h"
 
 namespace trocar::report {
 
@@ -19,5 +19,9 @@ std::string html_report(const storage::Session& session, const anatomy::VirtualP
 
 /// Name of a session's report: "a.trocar" -> "a.report.html".
 std::filesystem::path report_file_of(const std::filesystem::path& session);
+
+/// The session in lines of plain text, in the order of html_report: passed or not with the reasons, what to improve,
+/// the score's parts, steps, actions, interruptions. Ends with a line break.
+std::string text_report(const storage::Session& session, const ReportStory& story = {});
 
 }  // namespace trocar::report

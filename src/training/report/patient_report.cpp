@@ -6,11 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "png/png_file.h"
 #include "report/detail/html.h"
-#include "report/detail/style.h"
-#include "slices/slice_legend.h"
 #include "slices/slice_picture.h"
 
 namespace trocar::report {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "report/detail/html.h"
-#include "report/detail/style.h"
 
 namespace trocar::report {
 using detail::escape;

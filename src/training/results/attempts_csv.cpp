@@ -9,7 +9,7 @@
 #include <fstream>
 #include <span>
 
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "results/csv_text.h"
 #include "results/detail/attempt_query.h"
 #include "results/detail/csv_columns.h"

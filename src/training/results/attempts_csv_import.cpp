@@ -9,16 +9,15 @@
 #include <unordered_map>
 
 #include "core/files/input_file.h"
-#include "core/parse_number.h"
-#include "core/utf8.h"
+#include "core/text.h"
 #include "database/sqlite_cache.h"
 #include "learning/history.h"
 #include "metrics/metric.h"
 #include "results/attempts_csv.h"
 #include "results/csv_text.h"
+#include "results/detail/attempt_query.h"
 #include "results/detail/attempt_writer.h"
 #include "results/detail/csv_columns.h"
-#include "results/detail/people_table.h"
 #include "results/names.h"
 
 namespace trocar::results {

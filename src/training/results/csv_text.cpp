@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/csv_guard.h"
+#include "core/text.h"
 
 namespace trocar::results {
 namespace {

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "core/ascii.h"
-#include "core/utf8.h"
+#include "core/text.h"
 
 namespace trocar::results {
 namespace {

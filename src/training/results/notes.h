@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "results/attempts.h"
+#include "results/people.h"
+#include "results/repository.h"
 
 namespace trocar::results {
 
@@ -34,5 +36,35 @@ Status delete_note(Repository& repository, std::string_view id);
 Result<std::map<std::int64_t, std::int64_t>> count_notes(Repository& repository, std::string_view person_id);
 /// One row a note: attempt, person, course, task, started_utc, written_utc, author, note. RFC 4180; see csv_text.
 Result<std::string> notes_csv(Repository& repository, const AttemptFilter& filter);
+
+/// Minutes of one entry: more is a mistake.
+inline constexpr double kLeastTeaching_min = 0.5, kMostTeaching_min = 600.0;
+
+/// Notes that an instructor spent `minutes` with a person on a task: standing by, showing, talking. No program can know
+/// it, so instructors enter it. Errors (exit status 2): no such person, minutes out of kLeast..kMostTeaching_min.
+Status add_teaching(Repository& repository, std::string_view person_id, std::string_view task, double minutes,
+                    Seconds now);
+
+/// Takes the newest entry of a person and a task back; its minutes. Error (exit status 2): there is none.
+Result<double> remove_last_teaching(Repository& repository, std::string_view person_id, std::string_view task);
+
+/// Sum of the minutes at a task, by person; only people with entries.
+Result<std::map<std::string, double>> teaching_minutes(Repository& repository, std::string_view task);
+
+/// Error (exit status 2): no such course, a name that cannot be used, or that another course has.
+Status rename_course(Repository& repository, std::string_view name, std::string_view new_name);
+/// Error (exit status 2): no such course, or it has people.
+Status remove_empty_course(Repository& repository, std::string_view name);
+
+/// What changes of a person; empty members stay as they are.
+struct PersonChange {
+  std::optional<std::string> name = {};
+  std::optional<Group> group = {};
+  std::optional<std::string> course = {};  ///< Made if there is none of this name; "": no course.
+};
+/// All of it or nothing. Errors (exit status 2): no such person, a name that cannot be used or is taken.
+Status change_person(Repository& repository, std::string_view id, const PersonChange& change);
+/// Moves all of them or nobody; `course` as above. Error (exit status 2): no such person, a name that cannot be used.
+Status move_people(Repository& repository, const std::vector<std::string>& ids, std::string_view course);
 
 }  // namespace trocar::results

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "results/deletion.h"
-#include "results/detail/note_deletion.h"
-#include "results/detail/people_table.h"
-#include "results/detail/rows.h"
+#include "results/detail/attempt_query.h"
+#include "results/repository.h"
 #include "signing/password.h"
-#include "signing/password_rules.h"
 
 namespace trocar::results {
 using namespace detail;

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <set>
 
-#include "results/deletion.h"
+#include "results/detail/attempt_query.h"
 #include "results/detail/form_tables.h"
-#include "results/detail/note_deletion.h"
 #include "results/names.h"
+#include "results/repository.h"
 #include "signing/token.h"
 
 namespace trocar::results {

@@ -6,7 +6,6 @@
 
 #include "metrics/metric.h"
 #include "results/detail/attempt_query.h"
-#include "results/detail/rows.h"
 #include "results/names.h"
 
 namespace trocar::results {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "telemetry/tick_pose.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::scoring {
 namespace {

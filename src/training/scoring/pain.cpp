@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "telemetry/tick_pose.h"
+#include "telemetry/tick_sample.h"
 #include "volume/sampling.h"
 
 namespace trocar::scoring {

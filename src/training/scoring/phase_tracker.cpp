@@ -7,12 +7,11 @@
 #include <numbers>
 #include <utility>
 
-#include "metrics/shadow.h"
+#include "metrics/metric.h"
 #include "scoring/core_sample.h"
 #include "scoring/pain.h"
-#include "tasks/bevel.h"
-#include "tasks/task_labels.h"
-#include "telemetry/tick_pose.h"
+#include "tasks/fit_to_patient.h"
+#include "telemetry/tick_sample.h"
 #include "volume/sampling.h"
 
 namespace trocar::scoring {

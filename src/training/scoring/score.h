@@ -13,11 +13,9 @@
 #include "metrics/harm_watch.h"
 #include "metrics/metric.h"
 #include "tasks/action.h"
-#include "tasks/active_time.h"
 #include "tasks/needle.h"
 #include "tasks/plan.h"
 #include "tasks/task.h"
-#include "tasks/xray_use.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::scoring {

@@ -14,8 +14,6 @@
 #include "metrics/metric.h"
 #include "scoring/score.h"
 #include "tasks/action.h"
-#include "tasks/active_time.h"
-#include "tasks/xray_use.h"
 #include "telemetry/needle_shape.h"
 #include "telemetry/tick_sample.h"
 
@@ -176,5 +174,16 @@ std::string event_text(const tasks::Interruption& interruption);
 /// incomplete session the last row has the event "incomplete"; after a gap of damaged ticks the next row (or the last
 /// one) has the event "damaged:FIRST-LAST".
 Status export_csv(const Session& session, const std::filesystem::path& path);
+
+/// A session without its recording.
+struct SessionSummary {
+  SessionInfo info;                         ///< The tissue table is that of the start, without names of ids.
+  std::optional<scoring::Outcome> outcome;  ///< Missing in an incomplete session.
+  bool is_incomplete() const noexcept { return !outcome.has_value(); }
+};
+
+/// Reads info and outcome of a session and checks their checksums; the time does not grow with the recording. Errors:
+/// those of load_session, but for damage in the recording, which passes unnoticed.
+Result<SessionSummary> load_summary(const std::filesystem::path& path);
 
 }  // namespace trocar::storage

@@ -8,21 +8,16 @@
 #include <cstring>
 
 #include "config/json.h"
-#include "core/check.h"
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "core/log.h"
-#include "storage/detail/action_table.h"
+#include "core/result.h"
 #include "storage/detail/checksums.h"
 #include "storage/detail/database.h"
 #include "storage/detail/info_table.h"
-#include "storage/detail/outcome_json.h"
 #include "storage/detail/parameters_table.h"
-#include "storage/detail/shape_table.h"
-#include "storage/detail/shared_lock.h"
 #include "storage/detail/tick_buffer.h"
-#include "storage/detail/transducer_table.h"
-#include "storage/detail/wal_checkpointer.h"
-#include "storage/detail/xray_table.h"
+#include "storage/detail/timed_table.h"
+#include "storage/score_json.h"
 #include "storage/session_file.h"
 
 namespace trocar::storage {

@@ -12,7 +12,7 @@
 #include "tasks/detail/path_check.h"
 #include "tasks/detail/planning_map.h"
 #include "tasks/fit_to_patient.h"
-#include "tasks/postures.h"
+#include "tasks/plan.h"
 #include "volume/sampling.h"
 
 namespace trocar::tasks {
@@ -261,6 +261,25 @@ std::optional<Vec3> find_nearest_skin(const anatomy::VirtualPatient& patient, co
     q_P -= 0.8 * distance * normal;  // damped: the normal changes abruptly at edges of the skin
   }
   return std::nullopt;
+}
+
+TaskReadiness check_task_and_paths(const Task& general, const anatomy::VirtualPatient& patient, const Needle& needle,
+                                   const Progress& progress) {
+  const Task task = fit_to_patient(general, patient);
+  TaskReadiness readiness = check_task(task, patient);
+  if (!readiness.is_possible) return readiness;
+  const auto paths = plan_paths(task, patient, needle, {}, progress);
+  if (paths) {
+    const anatomy::Posture posture = paths->front().posture;
+    if (posture == patient.posture) return readiness;
+    readiness.posture = posture;
+    readiness.reasons.push_back(fmt::format("done with the patient {}, who is {} in the scan",
+                                            anatomy::posture_words(posture), anatomy::posture_words(patient.posture)));
+    return readiness;
+  }
+  readiness.is_possible = false;
+  readiness.reasons.push_back(paths.error().what);
+  return readiness;
 }
 
 }  // namespace trocar::tasks

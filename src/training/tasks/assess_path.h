@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
+#include "core/progress.h"
 #include "tasks/needle.h"
 #include "tasks/plan.h"
 #include "tasks/task.h"
@@ -53,5 +54,11 @@ std::optional<Vec3> find_skin_entry(const anatomy::VirtualPatient& patient, cons
                                     double longest_mm = 400.0);
 /// The point of the skin nearest to a point; empty if there is no skin within `reach_mm`.
 std::optional<Vec3> find_nearest_skin(const anatomy::VirtualPatient& patient, const Vec3& p_P, double reach_mm = 60.0);
+
+/// Runs check_task and, if nothing is missing, the planner: a patient without a safe path cannot serve the task. The
+/// planner's error is then the last of the reasons. `patient check` uses this function and therefore agrees with
+/// `plan`.
+TaskReadiness check_task_and_paths(const Task& task, const anatomy::VirtualPatient& patient, const Needle& needle,
+                                   const Progress& progress = {});
 
 }  // namespace trocar::tasks

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "anatomy/label_table.h"
-#include "anatomy/structure_pattern.h"
+#include "anatomy/known_structures.h"
+#include "anatomy/patient.h"
 #include "config/toml.h"
 #include "core/result.h"
 

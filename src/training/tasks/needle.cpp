@@ -7,7 +7,7 @@
 #include <iterator>
 #include <span>
 
-#include "config/sourced_number.h"
+#include "config/toml.h"
 
 namespace trocar::tasks {
 namespace {

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "tasks/detail/guided_hand.h"
-#include "tasks/detail/pending_actions.h"
 #include "tasks/operator.h"
 
 namespace trocar::tasks {

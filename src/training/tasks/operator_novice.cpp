@@ -6,7 +6,6 @@
 
 #include "core/random.h"
 #include "tasks/detail/guided_hand.h"
-#include "tasks/detail/pending_actions.h"
 #include "tasks/operator.h"
 
 namespace trocar::tasks {

@@ -16,7 +16,7 @@
 #include "tasks/detail/block_grid.h"
 #include "tasks/detail/path_check.h"
 #include "tasks/detail/planning_map.h"
-#include "tasks/postures.h"
+#include "tasks/fit_to_patient.h"
 
 namespace trocar::tasks {
 namespace {

@@ -14,9 +14,9 @@
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "core/result.h"
+#include "tasks/action.h"
 #include "tasks/harm.h"
 #include "tasks/phases/phase.h"
-#include "tasks/substance.h"
 
 namespace trocar::tasks {
 

@@ -8,7 +8,7 @@
 
 #include "config/toml.h"
 #include "config/toml_writer.h"
-#include "core/files/list_folder.h"
+#include "core/files/folders.h"
 #include "tasks/detail/task_rules.h"
 #include "tasks/task.h"
 

@@ -5,7 +5,7 @@
 
 #include "anatomy/phantom/phantom.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "core/check.h"
+#include "core/result.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/tick.h"
 #include "volume/resample.h"

@@ -2,7 +2,7 @@
 
 #include <QPainter>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "scene/input_watch.h"
 #include "ui_kit/theme.h"
 #include "views/patient/stereo_output.h"

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/frame_times.h"
+#include "scene/detail_policy.h"
 #include "scene/patient_scene.h"
 #include "ultrasound/probe/scan_geometry.h"
 

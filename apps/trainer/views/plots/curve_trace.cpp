@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/check.h"
+#include "core/result.h"
 
 namespace trocar::trainer {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "ui_kit/theme.h"
 
 namespace trocar::trainer {

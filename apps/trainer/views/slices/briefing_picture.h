@@ -6,9 +6,9 @@
 #include <QString>
 #include <vector>
 
-#include "anatomy/label_table.h"
+#include "anatomy/patient.h"
 #include "cases/open_case.h"
-#include "scene/guidance.h"
+#include "scene/scene_options.h"
 
 namespace trocar::trainer {
 

@@ -4,7 +4,7 @@
 #include <QPainter>
 #include <span>
 
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 #include "slices/slice_geometry.h"
 #include "tasks/task.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 
 class QPainter;
 

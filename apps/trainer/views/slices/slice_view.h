@@ -9,9 +9,9 @@
 
 #include "anatomy/patient.h"
 #include "geometry/pose.h"
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 #include "motion/patient_motion.h"
-#include "scene/guidance.h"
+#include "scene/scene_options.h"
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
 #include "tasks/task.h"

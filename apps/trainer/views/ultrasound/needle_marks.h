@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 #include "ultrasound/live/scan_picture.h"
 #include "views/ultrasound/ultrasound_layout.h"
 

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/log.h"
 #include "ui_kit/control_section.h"
 #include "ui_kit/parts.h"

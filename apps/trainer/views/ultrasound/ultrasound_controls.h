@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "ultrasound/scanner/scan_preset.h"
+#include "ultrasound/scanner/display_settings.h"
 #include "views/ultrasound/ultrasound_view.h"
 
 class QBoxLayout;

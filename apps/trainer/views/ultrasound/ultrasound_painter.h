@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ultrasound/live/live_scanner.h"
-#include "ultrasound/probe/acoustic_output.h"
+#include "ultrasound/probe/transducer.h"
 #include "ultrasound/scanner/measurements.h"
 #include "ultrasound/scanner/scan_annotation.h"
 #include "views/ultrasound/ultrasound_layout.h"

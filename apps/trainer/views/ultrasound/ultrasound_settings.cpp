@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ui_kit/parts.h"
-#include "ultrasound/live/scan_request.h"
+#include "ultrasound/live/scan_picture.h"
 
 namespace trocar::trainer {
 namespace {

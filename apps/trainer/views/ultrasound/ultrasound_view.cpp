@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
 #include "views/ultrasound/needle_marks.h"

@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "geometry/segment.h"
-#include "motion/motion_clock.h"
+#include "geometry/shapes.h"
+#include "motion/patient_motion.h"
 #include "ultrasound/doppler/flow_on_demand.h"
 #include "ultrasound/live/live_scanner.h"
-#include "ultrasound/panorama/panorama_on_demand.h"
-#include "ultrasound/probe/acoustic_output.h"
+#include "ultrasound/panorama/panorama.h"
+#include "ultrasound/probe/transducer.h"
 #include "ultrasound/scanner/measurements.h"
 #include "views/ultrasound/caliper_marks.h"
 #include "views/ultrasound/ultrasound_box.h"

@@ -10,7 +10,7 @@
 #include "ui_kit/action_table.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/window_language.h"
-#include "ultrasound/scanner/automatic_gain.h"
+#include "ultrasound/scanner/display_settings.h"
 #include "views/ultrasound/ultrasound_view.h"
 
 namespace trocar::trainer {

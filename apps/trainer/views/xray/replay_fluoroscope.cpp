@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "attempt/record/contrast_replay.h"
-#include "core/files/data_dir.h"
+#include "attempt/record/xray_replay.h"
+#include "core/files/folders.h"
 #include "core/live/live_worker.h"
 #include "core/log.h"
 #include "core/random.h"

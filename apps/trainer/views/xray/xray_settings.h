@@ -1,6 +1,6 @@
 #pragma once
 
-#include "xray/fluoroscopy/fluoroscopy_frame.h"
+#include "xray/fluoroscopy/fluoroscope.h"
 
 namespace trocar::trainer {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "cases/contrast_blood.h"
-#include "core/files/data_dir.h"
+#include "cases/imaging.h"
+#include "core/files/folders.h"
 #include "core/log.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"

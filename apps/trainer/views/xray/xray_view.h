@@ -13,15 +13,14 @@
 #include "attempt/record/xray_replay.h"
 #include "core/background_job.h"
 #include "motion/patient_motion.h"
+#include "tasks/action.h"
 #include "tasks/needle.h"
-#include "tasks/xray_use.h"
 #include "views/xray/replay_fluoroscope.h"
 #include "views/xray/xray_settings.h"
-#include "xray/contrast/live_contrast.h"
+#include "xray/contrast/contrast_flow.h"
 #include "xray/fluoroscopy/live_fluoroscope.h"
-#include "xray/geometry/c_arm_presets.h"
-#include "xray/tools/guide_wire.h"
-#include "xray/tools/tool_table.h"
+#include "xray/geometry/c_arm.h"
+#include "xray/tools/tool_shape.h"
 
 namespace trocar::trainer {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "devices/pointer/polled_pointer.h"
+#include "devices/pointer/pointer_device.h"
 
 namespace trocar::devices {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "core/files/list_folder.h"
+#include "core/files/folders.h"
 #include "core/log.h"
 #include "core/random.h"
 #include "core/start_thread.h"

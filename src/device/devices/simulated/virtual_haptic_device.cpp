@@ -4,10 +4,9 @@
 #include <cmath>
 
 #include "devices/detail/factories.h"
-#include "devices/detail/units.h"
 #include "devices/simulated/detail/hand_motion.h"
-#include "devices/stylus_profile.h"
-#include "geometry/clamp_norm.h"
+#include "devices/workspace_map.h"
+#include "geometry/vec.h"
 #include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {

@@ -5,7 +5,7 @@
 
 #include "devices/haptic_device.h"
 #include "devices/simulated/detail/hand_motion.h"
-#include "haptics/closed_loop/virtual_stylus.h"
+#include "haptics/coupling/virtual_stylus.h"
 
 namespace trocar::devices {
 

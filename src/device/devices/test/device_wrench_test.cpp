@@ -1,5 +1,3 @@
-#include "devices/device_wrench.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -7,6 +5,7 @@
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
 #include "devices/test/random_vec.h"
+#include "devices/workspace_map.h"
 
 namespace trocar::devices {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/testing/allocation_guard.h"
 #include "devices/device_spec.h"
 

@@ -4,9 +4,9 @@
 
 #include <optional>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "devices/simulated/virtual_haptic_device.h"
-#include "haptics/closed_loop/virtual_stylus.h"
+#include "haptics/coupling/virtual_stylus.h"
 
 namespace trocar::testing {
 

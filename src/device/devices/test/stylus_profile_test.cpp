@@ -1,13 +1,11 @@
-#include "devices/stylus_profile.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "devices/device_spec.h"
 #include "devices/simulated/virtual_haptic_device.h"
+#include "devices/workspace_map.h"
 
 namespace trocar::devices {
 namespace {

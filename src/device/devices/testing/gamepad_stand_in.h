@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::testing {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "geometry/vec.h"
 
 namespace trocar::testing {

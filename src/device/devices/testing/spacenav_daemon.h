@@ -8,7 +8,7 @@
 #include <string_view>
 #include <thread>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::testing {
 

@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 #include "devices/haptic_device.h"
-#include "devices/vendor/servo_pace.h"
+#include "devices/vendor/detail/servo_exchange.h"
 
 namespace trocar::devices {
 

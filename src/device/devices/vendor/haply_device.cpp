@@ -6,9 +6,9 @@
 
 #include "core/start_thread.h"
 #include "devices/detail/factories.h"
-#include "devices/stylus_profile.h"
 #include "devices/vendor/detail/haply_messages.h"
 #include "devices/vendor/detail/websocket.h"
+#include "devices/workspace_map.h"
 #include "realtime/periodic_loop.h"
 
 namespace trocar::devices {

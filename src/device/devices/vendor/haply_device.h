@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "devices/haptic_device.h"
-#include "realtime/triple_buffer.h"
+#include "realtime/lock_free.h"
 
 namespace trocar::devices {
 

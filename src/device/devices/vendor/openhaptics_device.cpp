@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 
-#include "core/ascii.h"
+#include "core/text.h"
 #include "devices/detail/factories.h"
-#include "devices/stylus_profile.h"
 #include "devices/vendor/detail/hd_connection.h"
+#include "devices/workspace_map.h"
 #include "realtime/periodic_loop.h"
 
 namespace trocar::devices {

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "link/codec.h"
-#include "link/detail/frame.h"
 #include "link/detail/inspection.h"
 
 namespace trocar::link {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "link/curve_keys.h"
+#include "link/endpoint.h"
 #include "link/messages.h"
 
 namespace trocar::link {

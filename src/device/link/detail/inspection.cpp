@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <string_view>
 
+#include "core/text.h"
 #include "link/messages.h"
 
 namespace trocar::link::detail {
@@ -99,6 +101,70 @@ wire::Pose to_wire(const Pose& pose) {
   std::array<double, 9> rotation;
   for (int i = 0; i < 9; ++i) rotation[static_cast<std::size_t>(i)] = pose.R()(i / 3, i % 3);
   return {flatbuffers::span<const double, 9>(rotation.data(), rotation.size()), to_wire(pose.p())};
+}
+
+namespace {
+
+bool is_control(char32_t c, Layout layout) {
+  if (c == '\t' || c == '\n' || c == '\r') return layout == Layout::kLine;
+  return c < 0x20 || (c >= 0x7F && c < 0xA0);
+}
+
+}  // namespace
+
+bool is_plain_text(std::string_view text, Layout layout) {
+  while (!text.empty()) {
+    const auto character = first_character(text);
+    if (!character || is_control(character->code_point, layout)) return false;
+    text.remove_prefix(character->bytes);
+  }
+  return true;
+}
+
+namespace {
+
+constexpr flatbuffers::uoffset_t kMostDepth = 4;  ///< Root, Command, SetParameters, TissueSetting.
+constexpr flatbuffers::uoffset_t kMostTables = kMostSettings + 8;
+
+}  // namespace
+
+AlignedBytes::AlignedBytes(std::span<const std::byte> bytes)
+    : words_((bytes.size() + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t)), size_(bytes.size()) {
+  if (!bytes.empty()) std::memcpy(words_.data(), bytes.data(), bytes.size());
+}
+
+flatbuffers::Verifier make_verifier(const AlignedBytes& bytes) {
+  return flatbuffers::Verifier(bytes.data(), bytes.size(), kMostDepth, kMostTables);
+}
+
+Status check_size(std::size_t bytes) {
+  if (bytes == 0) return fail("an empty message", "link", "check the program on the other side");
+  if (bytes > kMostMessageBytes) {
+    return fail(fmt::format("a message of {} bytes, {} are allowed", bytes, kMostMessageBytes), "link",
+                "send smaller messages");
+  }
+  return {};
+}
+
+Status check_frame(const AlignedBytes& bytes, const char* identifier) {
+  flatbuffers::Verifier verifier = make_verifier(bytes);
+  if (!verifier.VerifyBuffer<wire::Prelude>(identifier)) {
+    const bool is_client = std::strcmp(identifier, kClientIdentifier) == 0;
+    return fail(fmt::format("not a message of a {}, or a damaged one", is_client ? "client" : "server"), "link",
+                "check that the other side is a Trocar program");
+  }
+  const std::uint32_t version = flatbuffers::GetRoot<wire::Prelude>(bytes.data())->version();
+  if (version != kLinkVersion) {
+    return fail(
+        fmt::format("the other side speaks version {} of the link, this program version {}", version, kLinkVersion),
+        "link", "install the same version of Trocar on both sides");
+  }
+  return {};
+}
+
+Bytes take_bytes(const flatbuffers::FlatBufferBuilder& builder) {
+  const auto* begin = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+  return {begin, begin + builder.GetSize()};
 }
 
 }  // namespace trocar::link::detail

@@ -3,8 +3,6 @@
 #include <bit>
 #include <cstring>
 
-#include "link/detail/wire_layout.h"
-
 namespace trocar::link::detail {
 namespace {
 

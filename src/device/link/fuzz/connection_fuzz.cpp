@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "core/check.h"
-#include "link/curve_keys.h"
-#include "link/limits.h"
+#include "core/result.h"
+#include "link/endpoint.h"
+#include "link/messages.h"
 #include "link/zmtp/detail/zmtp_connection.h"
 
 namespace trocar::link::detail {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "link/codec.h"
 #include "link/test/fingerprint.h"
 #include "link/test/invariants.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "link/codec.h"
 #include "link/test/random_message.h"
 

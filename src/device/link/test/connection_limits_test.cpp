@@ -7,8 +7,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "link/detail/descriptor.h"
-#include "link/limits.h"
+#include "link/detail/ipc_file.h"
+#include "link/messages.h"
 #include "link/test/raw_link.h"
 
 namespace trocar::link {

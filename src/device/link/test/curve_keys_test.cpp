@@ -1,5 +1,3 @@
-#include "link/curve_keys.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -7,8 +5,9 @@
 
 #include <fstream>
 
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
+#include "link/endpoint.h"
 
 namespace trocar::link {
 namespace {

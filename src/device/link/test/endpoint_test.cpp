@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
-#include "core/files/temporary_folder.h"
-#include "link/detail/private_folder.h"
+#include "core/files/folders.h"
+#include "link/detail/ipc_file.h"
 
 namespace trocar::link {
 namespace {

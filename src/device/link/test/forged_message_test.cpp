@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "link/codec.h"
-#include "link/detail/frame.h"
+#include "link/detail/inspection.h"
 #include "link/detail/wire_sample.h"
 #include "link/test/random_message.h"
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "link/codec.h"
-#include "link/detail/plain_text.h"
+#include "link/detail/inspection.h"
 #include "link/test/field_walk.h"
 #include "link/test/random_message.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "link/codec.h"
 #include "link/endpoint.h"
 #include "link/server_socket.h"

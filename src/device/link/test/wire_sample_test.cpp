@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "link/detail/wire_layout.h"
 #include "link/test/fingerprint.h"
 #include "link/test/random_message.h"
 

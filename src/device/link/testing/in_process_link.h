@@ -10,11 +10,10 @@
 #include <variant>
 #include <vector>
 
-#include "link/client/detail/client_beat.h"
 #include "link/client/detail/client_mailbox.h"
 #include "link/client/detail/client_session.h"
 #include "link/client/haptic_client.h"
-#include "link/limits.h"
+#include "link/messages.h"
 #include "link/server_socket.h"
 #include "link/zmtp/detail/peer_table.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "geometry/clamp_norm.h"
+#include "geometry/vec.h"
 #include "haptics/closed_loop/rotation.h"
 
 namespace trocar::server::detail {

@@ -1,9 +1,9 @@
-#include "server/command_queue.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <thread>
+
+#include "server/servo_commands.h"
 
 namespace trocar::server {
 namespace {

@@ -1,6 +1,6 @@
-#include "server/detail/device_lease.h"
-
 #include <gtest/gtest.h>
+
+#include "server/detail/shared.h"
 
 namespace trocar::server {
 namespace {

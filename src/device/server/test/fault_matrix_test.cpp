@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "core/ascii.h"
+#include "core/text.h"
 #include "devices/pointer/pointer_device.h"
 #include "devices/simulated/faulty_device.h"
 #include "devices/simulated/replay_device.h"

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <set>
 
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 
 namespace trocar::server {
 namespace {

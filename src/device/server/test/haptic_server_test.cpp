@@ -9,7 +9,7 @@
 #include <functional>
 #include <thread>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/random.h"
 #include "link/client/haptic_client.h"
 #include "link/codec.h"

@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "link/client/haptic_client.h"
 #include "server/haptic_server.h"
 #include "server/test/servo_rig.h"

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/testing/allocation_guard.h"
+#include "server/device_trial.h"
 #include "server/test/weighing_scale.h"
-#include "server/weigh_report.h"
 
 namespace trocar::server {
 namespace {

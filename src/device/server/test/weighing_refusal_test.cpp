@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "devices/simulated/faulty_device.h"
+#include "server/device_trial.h"
 #include "server/test/weighing_scale.h"
-#include "server/weigh_report.h"
 
 namespace trocar::server {
 namespace {

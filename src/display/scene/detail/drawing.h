@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
-#include "geometry/triangle_mesh.h"
+#include "geometry/shapes.h"
 #include "scene/camera.h"
-#include "scene/detail/appearance.h"
+#include "scene/structure.h"
 #include "volume/image.h"
 
 class vtkPolyDataMapper;

@@ -7,6 +7,7 @@
 #include <vtkQuadricDecimation.h>
 
 #include <cmath>
+#include <numbers>
 #include <unordered_map>
 
 namespace trocar::scene::detail {
@@ -112,6 +113,104 @@ std::vector<Vec3f> vertex_normals(const TriangleMesh& mesh) {
     if (length > 0.0F) n /= length;
   }
   return normals;
+}
+
+std::optional<double> first_hit_mm(const TriangleMesh& mesh, const Vec3& origin, const Vec3& direction) {
+  // The intersection in barycentric coordinates (Möller and Trumbore, 1997).
+  std::optional<double> nearest_mm;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 a = mesh.vertices[t[0]].cast<double>();
+    const Vec3 edge_b = mesh.vertices[t[1]].cast<double>() - a;
+    const Vec3 edge_c = mesh.vertices[t[2]].cast<double>() - a;
+    const Vec3 square = direction.cross(edge_c);
+    const double area = edge_b.dot(square);
+    if (std::abs(area) < 1e-12) continue;
+    const Vec3 from_a = origin - a;
+    const double u = from_a.dot(square) / area;
+    if (u < 0.0 || u > 1.0) continue;
+    const Vec3 other = from_a.cross(edge_b);
+    const double v = direction.dot(other) / area;
+    if (v < 0.0 || u + v > 1.0) continue;
+    const double along_mm = edge_c.dot(other) / area;
+    if (along_mm > 0.0 && (!nearest_mm || along_mm < *nearest_mm)) nearest_mm = along_mm;
+  }
+  return nearest_mm;
+}
+
+namespace {
+
+std::uint32_t add_point(TriangleMesh& mesh, const Vec3& p) {
+  mesh.vertices.push_back(p.cast<float>());
+  return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+}
+
+/// A lid with its own points, so that the edge stays sharp.
+void add_lid(TriangleMesh& mesh, const std::vector<Vec3>& ring, bool faces_forward) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : ring) middle += p;
+  const std::uint32_t center = add_point(mesh, middle / static_cast<double>(ring.size()));
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Vec3& p : ring) add_point(mesh, p);
+  const auto count = static_cast<std::uint32_t>(ring.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t a = first + i;
+    const std::uint32_t b = first + (i + 1) % count;
+    mesh.triangles.push_back(faces_forward ? std::array{center, a, b} : std::array{center, b, a});
+  }
+}
+
+}  // namespace
+
+TriangleMesh make_loft(const std::vector<std::vector<Vec3>>& rings) {
+  TriangleMesh mesh;
+  const auto sides = static_cast<std::uint32_t>(rings.front().size());
+  for (const auto& ring : rings) {
+    for (const Vec3& p : ring) add_point(mesh, p);
+  }
+  for (std::uint32_t r = 0; r + 1 < rings.size(); ++r) {
+    for (std::uint32_t s = 0; s < sides; ++s) {
+      const std::uint32_t next = (s + 1) % sides;
+      const std::uint32_t low = r * sides;
+      const std::uint32_t high = low + sides;
+      mesh.triangles.push_back({low + s, low + next, high + next});
+      mesh.triangles.push_back({low + s, high + next, high + s});
+    }
+  }
+  add_lid(mesh, rings.front(), false);
+  add_lid(mesh, rings.back(), true);
+  return mesh;
+}
+
+TriangleMesh make_turned(const Pose& X_AL, std::span<const Ring> rings, int sides) {
+  std::vector<std::vector<Vec3>> circles;
+  for (const Ring& ring : rings) {
+    std::vector<Vec3> circle;
+    for (int s = 0; s < sides; ++s) {
+      const double angle = 2.0 * std::numbers::pi * s / sides;
+      circle.push_back(X_AL * Vec3(ring.r * std::cos(angle), ring.r * std::sin(angle), ring.z));
+    }
+    circles.push_back(std::move(circle));
+  }
+  return make_loft(circles);
+}
+
+TriangleMesh make_box(const Pose& X_AL, const Vec3& half_mm, double corner_mm) {
+  constexpr int kStepsOfCorner = 4;
+  std::vector<std::vector<Vec3>> outlines;
+  for (const double z : {-half_mm.z(), half_mm.z()}) {
+    std::vector<Vec3> outline;
+    for (int corner = 0; corner < 4; ++corner) {
+      const double sx = corner == 0 || corner == 3 ? 1.0 : -1.0;
+      const double sy = corner < 2 ? 1.0 : -1.0;
+      for (int step = 0; step <= kStepsOfCorner; ++step) {
+        const double angle = 0.5 * std::numbers::pi * (corner + static_cast<double>(step) / kStepsOfCorner);
+        outline.push_back(X_AL * Vec3(sx * (half_mm.x() - corner_mm) + corner_mm * std::cos(angle),
+                                      sy * (half_mm.y() - corner_mm) + corner_mm * std::sin(angle), z));
+      }
+    }
+    outlines.push_back(std::move(outline));
+  }
+  return make_loft(outlines);
 }
 
 }  // namespace trocar::scene::detail

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "geometry/triangle_mesh.h"
+#include "geometry/pose.h"
+#include "geometry/shapes.h"
 
 namespace trocar::scene::detail {
 
@@ -23,5 +26,24 @@ SimplifiedMesh simplify(const TriangleMesh& mesh, const std::vector<Vec3f>& norm
 /// About `keep` (0..1) of a mesh's triangles by edge collapses with the least change of shape (VTK's quadric
 /// decimation), with normals computed from the new mesh. Slower than `simplify`, but better for a small `keep`.
 SimplifiedMesh decimate(const TriangleMesh& mesh, double keep);
+
+/// Distance (mm) from `origin` to the first triangle that a ray along the unit vector `direction` intersects, from
+/// either side; empty if there is none.
+std::optional<double> first_hit_mm(const TriangleMesh& mesh, const Vec3& origin, const Vec3& direction);
+
+/// A circle of a solid of revolution: at `z` along the axis, of radius `r` (mm).
+struct Ring {
+  double z;
+  double r;
+};
+
+/// Solid of revolution about the z axis of L: rings by rising z; closed by discs at both ends.
+TriangleMesh make_turned(const Pose& X_AL, std::span<const Ring> rings, int sides = 24);
+/// A box about the origin of L with half sizes, its edges along z rounded.
+TriangleMesh make_box(const Pose& X_AL, const Vec3& half_mm, double corner_mm = 0.0);
+
+/// Surface through closed rings with equal numbers of points, closed at both ends by fans to the rings' centres. The
+/// points of a ring are counter-clockwise as seen from the last ring's side.
+TriangleMesh make_loft(const std::vector<std::vector<Vec3>>& rings);
 
 }  // namespace trocar::scene::detail

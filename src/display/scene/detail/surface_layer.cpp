@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/check.h"
 #include "core/parallel.h"
+#include "core/result.h"
 #include "core/start_thread.h"
 #include "scene/detail/simplify.h"
 

@@ -6,7 +6,8 @@
 
 #include "geometry/pose.h"
 #include "scene/detail/drawing.h"
-#include "scene/transducer_shape.h"
+#include "scene/scene_options.h"
+#include "scene/tool_shapes.h"
 
 namespace trocar::scene::detail {
 
@@ -54,6 +55,23 @@ class ToolLayer {
   vtkSmartPointer<vtkActor> throw_;
   vtkSmartPointer<vtkActor> transducer_;
   PictureQuad ultrasound_;
+};
+
+/// A palpating fingertip, and dots of a skin marker.
+class HandLayer {
+ public:
+  explicit HandLayer(vtkRenderer& renderer);
+
+  /// True if it changed something.
+  bool set(const std::optional<Fingertip>& finger, std::span<const Vec3> skin_marks_P);
+
+ private:
+  bool set_finger(const std::optional<Fingertip>& finger);
+  bool set_marks(std::span<const Vec3> marks_P);
+
+  std::optional<Fingertip> finger_;
+  std::vector<Vec3> marks_P_;
+  vtkSmartPointer<vtkActor> finger_actor_, marks_actor_;
 };
 
 }  // namespace trocar::scene::detail

@@ -2,9 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "anatomy/patient.h"
-#include "scene/volume_preset.h"
+#include "scene/scene_options.h"
 
 namespace trocar::scene::detail {
 
@@ -24,5 +25,8 @@ std::array<std::int64_t, 3> cloud_steps(const volume::GridGeometry& ct, std::int
 /// The CT (HU) as means of blocks of voxels (`steps`: 1 .. size); incomplete blocks at the far borders are dropped.
 volume::CtGrid make_cloud(const anatomy::VirtualPatient& patient, CloudContent content,
                           const std::array<std::int64_t, 3>& steps);
+
+/// Points near the skin (P, mm), some millimetres apart: what a camera shows before there are surfaces.
+std::vector<Vec3> skin_points(const anatomy::VirtualPatient& patient);
 
 }  // namespace trocar::scene::detail

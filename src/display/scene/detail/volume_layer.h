@@ -12,7 +12,7 @@
 
 #include "anatomy/patient.h"
 #include "scene/detail/volume_copy.h"
-#include "scene/volume_preset.h"
+#include "scene/scene_options.h"
 
 namespace trocar::scene::detail {
 

@@ -1,6 +1,6 @@
-#include "scene/frame_times.h"
-
 #include <gtest/gtest.h>
+
+#include "scene/detail_policy.h"
 
 namespace trocar::scene {
 namespace {

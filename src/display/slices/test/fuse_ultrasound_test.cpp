@@ -1,6 +1,6 @@
-#include "slices/fuse_ultrasound.h"
-
 #include <gtest/gtest.h>
+
+#include "slices/paint_slice.h"
 
 namespace trocar::slices {
 namespace {

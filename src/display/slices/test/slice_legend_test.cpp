@@ -1,10 +1,9 @@
-#include "slices/slice_legend.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "volume/bitmap_font.h"
+#include "slices/slice_picture.h"
+#include "volume/image.h"
 
 namespace trocar::slices {
 namespace {

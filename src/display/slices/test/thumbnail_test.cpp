@@ -1,5 +1,3 @@
-#include "slices/thumbnail.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "anatomy/build_patient.h"
 #include "slices/slice_geometry.h"
+#include "slices/slice_picture.h"
 #include "slices/test/coarse_abdomen.h"
 
 namespace trocar::slices {

@@ -1,9 +1,9 @@
-#include "slices/window_level.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <vector>
+
+#include "slices/paint_slice.h"
 
 namespace trocar::slices {
 namespace {

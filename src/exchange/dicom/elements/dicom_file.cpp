@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "core/files/input_file.h"
-#include "core/parse_number.h"
+#include "core/text.h"
 
 namespace trocar::dicom {
 namespace fs = std::filesystem;

@@ -6,12 +6,10 @@
 #include <utility>
 
 #include "config/json.h"
-#include "core/ascii.h"
-#include "core/fail_at.h"
-#include "core/parse_number.h"
+#include "core/result.h"
+#include "core/text.h"
+#include "dicom/pacs/detail/data_set.h"
 #include "dicom/pacs/detail/http_client.h"
-#include "dicom/pacs/detail/multipart_reader.h"
-#include "dicom/pacs/detail/query.h"
 
 namespace trocar::dicom {
 namespace {

@@ -5,13 +5,70 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "core/parse_number.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
+#include "core/text.h"
 #include "dicom/pacs/detail/anonymisation.h"
-#include "dicom/pacs/detail/series_writer.h"
+#include "dicom/pacs/detail/data_set.h"
+#include "dicom/pacs/detail/object_files.h"
+#include "dicom/pacs/detail/rewrite_object.h"
+#include "dicom/pacs/pacs_source.h"
+
+namespace trocar::dicom::detail {
+
+/// Which objects a series may consist of, and how they are written.
+struct SeriesRules {
+  std::string study_uid;
+  std::string series_uid;
+  Anonymisation* anonymisation = nullptr;      ///< Null: unchanged.
+  std::function<bool()> is_cancelled;          ///< May be empty.
+  std::function<void(std::size_t)> on_object;  ///< Called with the number of objects so far; may be empty.
+};
+
+/// Writes the objects of one series into a folder while they arrive.
+class SeriesWriter final : public ObjectSink {
+ public:
+  /// `folder` must exist. Errors: the file for arriving objects cannot be created.
+  static Result<SeriesWriter> create(const std::filesystem::path& folder, SeriesRules rules);
+
+  Status begin() override;
+  Status append(std::string_view bytes) override;
+  Status end(const std::string& transfer_syntax) override;
+  bool is_cancelled() const override;
+
+  /// Names the files by the numbers of the objects. Returns their count.
+  Result<std::size_t> finish();
+  std::size_t skipped() const noexcept { return skipped_; }  ///< Objects of a kind that cannot be anonymised.
+  bool may_show_text() const noexcept { return may_show_text_; }
+
+ private:
+  /// A written object; by these fields the files are ordered.
+  struct Written {
+    int number = 0;
+    std::string sop_instance;
+    std::filesystem::path file;
+    auto operator<=>(const Written&) const = default;
+  };
+  SeriesWriter(std::filesystem::path folder, SeriesRules rules, ReceivedFile file);
+
+  std::filesystem::path folder_;
+  SeriesRules rules_;
+  ReceivedFile file_;
+  std::vector<Written> written_;
+  std::set<std::string> sop_instances_;
+  std::size_t skipped_ = 0;
+  bool may_show_text_ = false;
+};
+
+}  // namespace trocar::dicom::detail
 
 namespace trocar::dicom {
 namespace fs = std::filesystem;
@@ -223,3 +280,70 @@ Result<FetchedStudy> fetch_study(PacsSource& source, const FetchOptions& options
 }
 
 }  // namespace trocar::dicom
+
+namespace trocar::dicom::detail {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kMaxObjects = 100'000;  ///< Assumed: ten times the largest series in practice.
+
+}  // namespace
+
+SeriesWriter::SeriesWriter(fs::path folder, SeriesRules rules, ReceivedFile file)
+    : folder_(std::move(folder)), rules_(std::move(rules)), file_(std::move(file)) {}
+
+Result<SeriesWriter> SeriesWriter::create(const fs::path& folder, SeriesRules rules) {
+  TROCAR_TRY(ReceivedFile file, ReceivedFile::create(folder));
+  return SeriesWriter(folder, std::move(rules), std::move(file));
+}
+
+Status SeriesWriter::begin() {
+  return file_.clear();
+}
+
+Status SeriesWriter::append(std::string_view bytes) {
+  if (is_cancelled()) return fail("cancelled", "", "fetch it again");
+  return file_.append(bytes);
+}
+
+Status SeriesWriter::end(const std::string& transfer_syntax) {
+  TROCAR_TRY(const std::string_view bytes, file_.bytes());
+  TROCAR_TRY(const DataSet data_set, find_data_set(bytes, transfer_syntax));
+  TROCAR_TRY(const ObjectSummary summary, summarize(data_set));
+  if (summary.study != rules_.study_uid || summary.series != rules_.series_uid)
+    return fail("the PACS sent an object of another study or series", "", "ask its administrator to check this study");
+  if (sop_instances_.contains(summary.sop_instance)) return {};  // sent twice
+  if (sop_instances_.size() == kMaxObjects)
+    return fail(fmt::format("the PACS sent more than {} objects", kMaxObjects), "", "fetch another series");
+  sop_instances_.insert(summary.sop_instance);
+  const fs::path file = folder_ / fmt::format("{}.part", sop_instances_.size());
+  if (rules_.anonymisation == nullptr) {
+    TROCAR_TRY_STATUS(write_unchanged(data_set, summary, file));
+  } else if (can_anonymise(summary.sop_class)) {
+    TROCAR_TRY_STATUS(write_anonymised(data_set, summary, *rules_.anonymisation, file));
+  } else {
+    ++skipped_;
+    return {};
+  }
+  may_show_text_ |= summary.may_show_text;
+  written_.push_back({summary.instance_number.value_or(0), summary.sop_instance, file});
+  if (rules_.on_object) rules_.on_object(written_.size());
+  return {};
+}
+
+bool SeriesWriter::is_cancelled() const {
+  return rules_.is_cancelled && rules_.is_cancelled();
+}
+
+Result<std::size_t> SeriesWriter::finish() {
+  std::ranges::sort(written_);
+  for (std::size_t n = 0; n < written_.size(); ++n) {
+    std::error_code error;
+    const fs::path name = folder_ / fmt::format("{:05}.dcm", n + 1);
+    fs::rename(written_[n].file, name, error);
+    if (error) return fail("cannot be written: " + error.message(), name.string(), "choose another folder");
+  }
+  return written_.size();
+}
+
+}  // namespace trocar::dicom::detail

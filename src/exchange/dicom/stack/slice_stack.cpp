@@ -5,8 +5,8 @@
 #include <numbers>
 #include <type_traits>
 
-#include "core/check.h"
 #include "core/parallel.h"
+#include "core/result.h"
 
 namespace trocar::dicom {
 namespace {

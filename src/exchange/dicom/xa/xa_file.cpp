@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "core/version.h"
 #include "dicom/elements/element_walk.h"
-#include "dicom/pacs/detail/data_elements.h"
-#include "dicom/pacs/detail/pseudonyms.h"
+#include "dicom/pacs/detail/anonymisation.h"
+#include "dicom/pacs/detail/element_writer.h"
 
 namespace trocar::dicom {
 namespace {

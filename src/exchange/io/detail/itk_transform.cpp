@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "io/image/detail/quiet.h"
+#include "io/image/detail/itk_image.h"
 
 namespace trocar::io::detail {
 namespace fs = std::filesystem;

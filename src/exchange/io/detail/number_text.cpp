@@ -1,6 +1,6 @@
 #include "io/detail/number_text.h"
 
-#include "core/parse_number.h"
+#include "core/text.h"
 
 namespace trocar::io::detail {
 namespace {

@@ -19,8 +19,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "core/files/temporary_folder.h"
-#include "core/parse_number.h"
+#include "core/files/folders.h"
+#include "core/text.h"
 #include "dicom/testing/segmentation_writer.h"
 #include "io/image/image_file.h"
 #include "io/image/testing/hand_made_nifti.h"

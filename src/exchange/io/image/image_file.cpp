@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "io/image/detail/image_fields.h"
+#include "io/image/detail/image_header.h"
 #include "io/image/detail/payload.h"
 #include "io/image/detail/read_grid.h"
 #include "io/image/detail/volume_file.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "anatomy/build_patient.h"
-#include "anatomy/derive/derive_choice.h"
+#include "anatomy/derive/derive_structures.h"
 #include "anatomy/patient.h"
 #include "anatomy/plausibility/anatomy_finding.h"
 #include "anatomy/tissue/hounsfield.h"
@@ -44,5 +44,16 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
 
 /// The last part of a path, without a trailing slash: "liver.nii.gz", "dicom_folder".
 std::string last_name(const std::filesystem::path& path);
+
+enum class ExportKind {
+  kNifti,  ///< ct.nii.gz, and a mask for each structure in segmentations/, as TotalSegmentator writes them.
+  kDicom   ///< ct/ct_0001.dcm …, and segmentation.dcm (DICOM SEG).
+};
+
+/// Writes CT and structures of a patient for other programs, and so that build_from_files() makes the same patient of
+/// them: structures that a build finds or derives itself are left out, the body is the structure "skin". The folder is
+/// written completely or not at all. Errors: the folder exists, the file system's.
+Status export_patient(const anatomy::VirtualPatient& patient, ExportKind kind, const std::filesystem::path& folder,
+                      const Progress& progress = {});
 
 }  // namespace trocar::io

@@ -7,11 +7,10 @@
 #include <array>
 
 #include "anatomy/build_patient.h"
-#include "anatomy/derive/derive_choice.h"
+#include "anatomy/derive/derive_structures.h"
 #include "config/toml.h"
-#include "core/ascii.h"
-#include "core/files/data_dir.h"
-#include "core/parse_number.h"
+#include "core/files/folders.h"
+#include "core/text.h"
 #include "io/patient/detail/number_schemes.h"
 
 namespace trocar::io {

@@ -6,13 +6,12 @@
 #include <algorithm>
 #include <array>
 
-#include "core/ascii.h"
-#include "core/files/list_folder.h"
+#include "core/files/folders.h"
 #include "core/parallel.h"
-#include "io/dicom/detail/find_series.h"
+#include "core/text.h"
+#include "io/dicom/dicom_folder.h"
 #include "io/image/detail/payload.h"
 #include "io/image/detail/read_grid.h"
-#include "io/patient/detail/dicom_labels.h"
 #include "io/patient/detail/label_checks.h"
 #include "io/patient/detail/mask_folder.h"
 #include "io/patient/detail/named_labels.h"

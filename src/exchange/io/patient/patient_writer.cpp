@@ -2,18 +2,18 @@
 
 #include <set>
 
-#include "core/ascii.h"
-#include "core/check.h"
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "core/parallel.h"
-#include "core/part_of_progress.h"
+#include "core/progress.h"
+#include "core/result.h"
+#include "core/text.h"
 #include "io/image/detail/volume_file.h"
 #include "io/image/image_file.h"
 #include "io/markups_file.h"
 #include "io/mesh_file.h"
-#include "io/patient/detail/patient_layout.h"
+#include "io/patient/detail/patient_toml.h"
+#include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
-#include "io/patient/patient_panorama.h"
 #include "io/sequence/transform_file.h"
 #include "motion/motion_file.h"
 
@@ -128,6 +128,18 @@ Status add_patient_meshes(const fs::path& folder, const std::vector<anatomy::Nam
   if (!description.meshes.empty()) return {};
   TROCAR_TRY(description.meshes, write_meshes(meshes, folder, {}));
   return write_file_atomically(folder / detail::kDescriptionFile, detail::to_toml(description));
+}
+
+namespace fs = std::filesystem;
+
+Result<std::vector<anatomy::NamedMesh>> load_patient_meshes(const fs::path& folder) {
+  TROCAR_TRY(const detail::PatientDescription description, detail::load_description(folder));
+  std::vector<anatomy::NamedMesh> meshes;
+  for (const detail::PatientMeshEntry& entry : description.meshes) {
+    TROCAR_TRY(TriangleMesh mesh_P, read_mesh(folder / entry.file, folder));
+    meshes.push_back({entry.name, std::move(mesh_P)});
+  }
+  return meshes;
 }
 
 }  // namespace trocar::io

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "ultrasound/sweep/freehand_options.h"
+#include "ultrasound/sweep/freehand.h"
 #include "ultrasound/sweep/tracked_sequence.h"
 
 namespace trocar::io {

@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include "core/files/atomic_file.h"
 #include "core/files/input_file.h"
-#include "core/parse_number.h"
+#include "core/files/output_file.h"
+#include "core/text.h"
 #include "io/detail/itk_transform.h"
 
 namespace trocar::io {

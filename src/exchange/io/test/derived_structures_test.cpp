@@ -8,11 +8,10 @@
 
 #include "anatomy/build_patient.h"
 #include "anatomy/plausibility/judge_anatomy.h"
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "core/testing/test_data.h"
 #include "io/patient/build_from_files.h"
-#include "io/patient/export_patient.h"
 
 namespace trocar::io {
 namespace {

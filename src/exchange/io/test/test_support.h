@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/testing/test_data.h"
 #include "volume/grid.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::png {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/utf8.h"
+#include "core/text.h"
 
 namespace trocar::config::detail {
 namespace {

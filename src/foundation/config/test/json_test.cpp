@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/random.h"
 
 namespace trocar::config {

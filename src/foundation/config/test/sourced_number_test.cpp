@@ -1,6 +1,6 @@
-#include "config/sourced_number.h"
-
 #include <gtest/gtest.h>
+
+#include "config/toml.h"
 
 namespace trocar::config {
 namespace {

@@ -12,7 +12,7 @@
 #include <new>
 #include <utility>
 
-#include "core/check.h"
+#include "core/result.h"
 
 namespace trocar {
 inline namespace core {

@@ -12,7 +12,6 @@
 
 #include "core/clock.h"
 #include "core/live/live_schedule.h"
-#include "core/live/live_thread.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/result.h"

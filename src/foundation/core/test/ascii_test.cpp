@@ -1,8 +1,8 @@
-#include "core/ascii.h"
-
 #include <gtest/gtest.h>
 
 #include <string_view>
+
+#include "core/text.h"
 
 namespace trocar::ascii {
 namespace {

@@ -1,5 +1,3 @@
-#include "core/cancellation.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -10,6 +8,7 @@
 
 #include "core/background_job.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "core/start_thread.h"
 
 namespace trocar {

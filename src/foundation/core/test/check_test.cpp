@@ -1,9 +1,9 @@
-#include "core/check.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <string>
+
+#include "core/result.h"
 
 namespace trocar {
 namespace {

@@ -1,8 +1,7 @@
-#include "core/csv_guard.h"
-
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "core/text.h"
 
 namespace trocar {
 inline namespace core {

@@ -1,5 +1,3 @@
-#include "core/decimal_point.h"
-
 #include <gtest/gtest.h>
 
 #include <clocale>
@@ -8,6 +6,7 @@
 #include <string>
 
 #include "core/testing/user_locale.h"
+#include "core/text.h"
 
 namespace trocar {
 namespace {

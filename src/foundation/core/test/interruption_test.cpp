@@ -12,8 +12,8 @@
 #include <string>
 #include <thread>
 
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "core/files/unfinished_output.h"
 
 namespace trocar {

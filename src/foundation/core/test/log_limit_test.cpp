@@ -1,12 +1,10 @@
-#include "core/log_limit.h"
-
 #include <gtest/gtest.h>
 
 #include <thread>
 
 #include "core/log.h"
 #include "core/testing/fake_clock.h"
-#include "core/utf8.h"
+#include "core/text.h"
 
 namespace trocar {
 namespace {

@@ -1,5 +1,3 @@
-#include "core/parse_number.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -7,6 +5,7 @@
 #include <string>
 
 #include "core/random.h"
+#include "core/text.h"
 
 namespace trocar {
 inline namespace core {

@@ -1,8 +1,8 @@
-#include "core/utf8.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "core/text.h"
 
 namespace trocar {
 inline namespace core {

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "core/files/atomic_file.h"
+#include "core/files/folders.h"
 #include "core/files/input_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/output_file.h"
 
 namespace trocar::testing {
 

@@ -7,9 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 
 namespace trocar::testing {
 

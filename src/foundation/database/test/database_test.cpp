@@ -9,9 +9,8 @@
 #include <fstream>
 #include <thread>
 
-#include "core/files/temporary_folder.h"
-#include "database/bytes.h"
-#include "database/migrations.h"
+#include "core/files/folders.h"
+#include "database/statements.h"
 
 namespace trocar::database {
 namespace {

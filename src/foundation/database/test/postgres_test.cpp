@@ -2,8 +2,7 @@
 
 #include <thread>
 
-#include "database/bytes.h"
-#include "database/migrations.h"
+#include "database/statements.h"
 #include "database/testing/postgres_server.h"
 
 namespace trocar::database {

@@ -1,5 +1,3 @@
-#include "database/sqlite_journal.h"
-
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -7,10 +5,10 @@
 #include <csignal>
 #include <fstream>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "database/database.h"
-#include "database/migrations.h"
-#include "database/sqlite_handle.h"
+#include "database/sqlite.h"
+#include "database/statements.h"
 #include "database/testing/other_file_system.h"
 
 namespace trocar::database {

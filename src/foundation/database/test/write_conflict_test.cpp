@@ -4,7 +4,7 @@
 #include <atomic>
 #include <thread>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "database/testing/postgres_server.h"
 
 namespace trocar::database {

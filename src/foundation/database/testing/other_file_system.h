@@ -6,7 +6,7 @@
 #include <csignal>
 #include <limits>
 
-#include "core/check.h"
+#include "core/result.h"
 
 namespace trocar::database::testing {
 

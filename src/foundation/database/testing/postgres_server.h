@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/testing/source_dir.h"
 #include "database/database.h"
 

@@ -1,11 +1,10 @@
-#include "geometry/clamp_norm.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "core/random.h"
+#include "geometry/vec.h"
 
 namespace trocar {
 inline namespace geometry {

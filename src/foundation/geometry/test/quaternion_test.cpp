@@ -1,8 +1,8 @@
-#include "geometry/quaternion.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "geometry/pose.h"
 
 namespace trocar {
 inline namespace geometry {

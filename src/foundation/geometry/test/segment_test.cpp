@@ -1,10 +1,9 @@
-#include "geometry/segment.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
+#include "geometry/shapes.h"
 
 namespace trocar {
 inline namespace geometry {

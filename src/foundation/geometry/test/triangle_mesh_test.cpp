@@ -1,10 +1,10 @@
-#include "geometry/triangle_mesh.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "geometry/shapes.h"
 
 namespace trocar {
 inline namespace geometry {

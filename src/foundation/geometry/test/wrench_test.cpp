@@ -1,6 +1,6 @@
-#include "geometry/wrench.h"
-
 #include <gtest/gtest.h>
+
+#include "geometry/vec.h"
 
 namespace trocar {
 namespace {

@@ -6,12 +6,9 @@
 #include <vector>
 
 #include "core/random.h"
-#include "realtime/handover.h"
-#include "realtime/latency_histogram.h"
+#include "realtime/lock_free.h"
 #include "realtime/loop_statistics.h"
 #include "realtime/periodic_loop.h"
-#include "realtime/spsc_ring.h"
-#include "realtime/triple_buffer.h"
 
 namespace trocar::realtime {
 namespace {

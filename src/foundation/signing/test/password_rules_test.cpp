@@ -1,8 +1,8 @@
-#include "signing/password_rules.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "signing/password.h"
 
 namespace trocar::signing {
 namespace {

@@ -6,10 +6,9 @@
 #include <thread>
 #include <vector>
 
-#include "core/files/atomic_file.h"
-#include "core/files/private_file.h"
-#include "core/files/temporary_folder.h"
-#include "signing/sha256.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
+#include "signing/token.h"
 
 namespace trocar::signing {
 namespace {

@@ -1,6 +1,6 @@
-#include "telemetry/tick_events.h"
-
 #include <gtest/gtest.h>
+
+#include "telemetry/tick_sample.h"
 
 namespace trocar::telemetry {
 namespace {

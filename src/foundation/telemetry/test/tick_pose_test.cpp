@@ -1,8 +1,7 @@
-#include "telemetry/tick_pose.h"
-
 #include <gtest/gtest.h>
 
 #include "telemetry/testing/sample_at.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::telemetry {
 namespace {

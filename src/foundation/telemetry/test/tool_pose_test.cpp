@@ -1,9 +1,9 @@
-#include "telemetry/tool_pose.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "telemetry/tick_sample.h"
 
 namespace trocar::testing {
 namespace {

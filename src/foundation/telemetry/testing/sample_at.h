@@ -1,7 +1,6 @@
 #pragma once
 
 #include "geometry/pose.h"
-#include "geometry/quaternion.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::testing {

@@ -1,6 +1,6 @@
 #include "volume/detail/weighted_rows.h"
 
-#include "core/check.h"
+#include "core/result.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volume/detail/weighted_rows.cpp"

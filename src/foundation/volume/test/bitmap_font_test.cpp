@@ -1,9 +1,9 @@
-#include "volume/bitmap_font.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
+
+#include "volume/image.h"
 
 namespace trocar::volume {
 namespace {

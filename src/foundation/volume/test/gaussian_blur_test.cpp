@@ -1,5 +1,3 @@
-#include "volume/gaussian_blur.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "volume/resample.h"
 #include "volume/testing/simd_targets.h"
 
 namespace trocar::volume {

@@ -1,7 +1,6 @@
-#include "volume/orientation.h"
-
 #include <gtest/gtest.h>
 
+#include "volume/resample.h"
 #include "volume/test/make_grids.h"
 
 namespace trocar::volume {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 
-#include "anatomy/derive/detail/spine_parts.h"
+#include "anatomy/derive/detail/canal.h"
 
 namespace trocar::anatomy::detail {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "anatomy/derive/detail/trunk_parts.h"
-#include "anatomy/structure_pattern.h"
+#include "anatomy/derive/detail/derived_labels.h"
+#include "anatomy/known_structures.h"
 
 namespace trocar::anatomy::detail {
 namespace {

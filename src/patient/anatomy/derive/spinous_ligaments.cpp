@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "anatomy/derive/detail/spine_parts.h"
+#include "anatomy/derive/detail/canal.h"
 
 namespace trocar::anatomy::detail {
 namespace {

@@ -13,9 +13,8 @@
 #include <set>
 #include <string_view>
 
-#include "core/check.h"
 #include "core/parallel.h"
-#include "volume/orientation.h"
+#include "core/result.h"
 #include "volume/resample.h"
 
 namespace trocar::anatomy::detail {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "anatomy/phantom/path_search.h"
+#include "anatomy/phantom/expert_paths.h"
 #include "anatomy/phantom/skeleton.h"
 
 namespace trocar::anatomy::phantom {
@@ -174,6 +174,25 @@ void add_lesions(Anatomy& anatomy, const BiopsyPlan& plan) {
   Random random = anatomy.random("lesion shapes");
   int number = 0;
   for (const Lesion& lesion : plan.lesions) paint_lesion(anatomy, lesion, ++number, random);
+}
+
+Result<BiopsyPlan> build_abdomen(Anatomy& anatomy) {
+  add_trunk(anatomy);
+  add_thorax(anatomy);
+  add_bowel(anatomy);
+  add_stomach(anatomy);
+  add_spleen(anatomy);
+  add_pancreas(anatomy);
+  add_back_muscles(anatomy);
+  add_kidneys(anatomy);
+  add_liver(anatomy);
+  add_great_vessels(anatomy);
+  add_skeleton(anatomy);
+  TROCAR_TRY(BiopsyPlan plan, plan_biopsy(anatomy));
+  add_liver_vessels(anatomy, plan);
+  add_lesions(anatomy, plan);
+  TROCAR_TRY_STATUS(anatomy.check_labels());
+  return plan;
 }
 
 }  // namespace trocar::anatomy::phantom

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "anatomy/phantom/bile_ducts.h"
+#include "anatomy/phantom/liver.h"
 #include "anatomy/phantom/structure.h"
 #include "core/result.h"
 
@@ -42,5 +42,9 @@ void add_lesions(Anatomy& anatomy, const BiopsyPlan& plan);
 /// Portal and hepatic veins inside the liver, grown by rule around lesions and path, with bile ducts and arteries
 /// beside the portal veins. Returns the ducts.
 DuctTree add_liver_vessels(Anatomy& anatomy, const BiopsyPlan& plan);
+
+/// Fills an empty anatomy with an upper abdomen, and returns the biopsy planned in it. Errors: see plan_biopsy; an
+/// unknown structure name.
+Result<BiopsyPlan> build_abdomen(Anatomy& anatomy);
 
 }  // namespace trocar::anatomy::phantom

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "config/toml.h"
-#include "core/parse_number.h"
 #include "core/random.h"
+#include "core/text.h"
 
 namespace trocar::anatomy::phantom {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "anatomy/phantom/landmarks.h"
+#include "anatomy/phantom/torso_patient.h"
 #include "volume/sampling.h"
 
 namespace trocar::anatomy::phantom {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "anatomy/phantom/bile_ducts.h"
+#include "anatomy/phantom/liver.h"
 #include "anatomy/phantom/structure.h"
 #include "core/result.h"
 
@@ -22,5 +24,23 @@ Result<std::vector<NeedlePath>> plan_bile_duct_paths(const Anatomy& anatomy, con
 
 /// Skin over the anterior superior iliac spine; sign -1 right, 1 left. Reference body.
 Vec3f iliac_spine_on_skin(const Anatomy& anatomy, float sign);
+
+/// Structures of one kind that a path keeps away from.
+class Obstacles {
+ public:
+  /// Structures whose name begins with one of these.
+  Obstacles(const Anatomy& anatomy, std::span<const std::string_view> prefixes);
+  /// True if all are farther than this from a place, mm.
+  bool all_farther(const Place& place, float mm) const;
+
+ private:
+  std::vector<const Structure*> structures_;
+};
+
+/// Bones and cartilages.
+Obstacles bones_of(const Anatomy& anatomy);
+
+/// Where a ray from inside leaves the body.
+Vec3f leave_body(const Anatomy& anatomy, const Vec3f& inside, const Vec3f& direction);
 
 }  // namespace trocar::anatomy::phantom

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "anatomy/known_structures.h"
-#include "anatomy/phantom/body_parameters.h"
+#include "anatomy/phantom/cases.h"
 #include "anatomy/phantom/layer_scene.h"
+#include "anatomy/phantom/render.h"
 #include "anatomy/phantom/structure.h"
-#include "anatomy/phantom/texture.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/parallel.h"
 #include "core/random.h"
 

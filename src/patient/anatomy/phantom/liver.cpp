@@ -1,10 +1,139 @@
+#include "anatomy/phantom/liver.h"
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "anatomy/phantom/bile_ducts.h"
 #include "anatomy/phantom/structure.h"
 
 namespace trocar::anatomy::phantom {
+namespace {
+
+constexpr float kBileHu = 8.0F, kWallHu = 70.0F, kHepaticArteryHu = 150.0F, kTumourHu = 78.0F;
+constexpr float kLeastRadius = 0.5F;
+constexpr float kArteryShare = 0.24F;
+constexpr float kBesideVeinMm = 0.4F;
+constexpr float kCysticRadius = 1.6F;
+constexpr double kNormalDiameter = 4.0;
+
+struct Companion {
+  Vec3f beside;                        ///< Direction from the vein.
+  std::function<float(float)> radius;  ///< Of the vein's radius.
+};
+
+/// A tree that runs beside another one. Pieces whose radius differs are joined where the veins join.
+std::vector<Cone> companions(const std::vector<Cone>& veins, const Companion& companion) {
+  const auto moved_end = [&](const Vec3f& p, float vein) -> Vec3f {
+    return p + companion.beside * (vein + companion.radius(vein) + kBesideVeinMm);
+  };
+  std::vector<Cone> tree;
+  for (std::size_t n = 0; n < veins.size(); ++n) {
+    const Cone& vein = veins[n];
+    const float radius = companion.radius(vein.radius_b);
+    if (radius < kLeastRadius) continue;
+    const Cone piece{moved_end(vein.a, vein.radius_a), moved_end(vein.b, vein.radius_b), radius, radius};
+    // The parent ends where this piece begins, at the distance of its own radius.
+    for (std::size_t m = 0; m < n; ++m)
+      if ((veins[m].b - vein.a).squaredNorm() < 1e-6F && veins[m].radius_b != vein.radius_a) {
+        tree.push_back({moved_end(veins[m].b, veins[m].radius_b), piece.a, radius, radius});
+        break;
+      }
+    tree.push_back(piece);
+  }
+  return tree;
+}
+
+float dilation(const BodyParameters& body) {
+  return static_cast<float>(body.duct_diameter_mm / kNormalDiameter);
+}
+
+/// Share of the portal vein's radius; central ducts widen more than peripheral ones.
+float duct_radius(float vein, float dilated) {
+  const float share = 0.3F * (1.0F + 0.75F * (dilated - 1.0F));
+  return std::min(share, 1.1F) * std::pow(vein, 0.95F);
+}
+
+struct OutsideDuct {
+  std::vector<Cone> cones;
+  Vec3f closed_at;
+};
+
+/// From the confluence to the papilla: wide above an obstruction, narrow below it.
+OutsideDuct outside_duct(const Anatomy& anatomy) {
+  const BileDuctData& data = anatomy.data.bile_duct;
+  const BodyParameters& body = anatomy.body;
+  const auto wide = static_cast<float>(0.5 * body.duct_diameter_mm);
+  std::vector<Knot> knots;
+  for (const Vec3f& p : data.course) knots.push_back({p, wide});
+  std::vector<Cone> cones = chain(knots);
+  OutsideDuct duct{{}, data.course.back()};
+  for (std::size_t n = 0; n < cones.size(); ++n) {
+    const float share = (static_cast<float>(n) + 0.5F) / static_cast<float>(cones.size());
+    const bool is_below = body.has_obstruction && share > static_cast<float>(body.obstruction_share);
+    if (is_below) cones[n].radius_a = cones[n].radius_b = data.narrow_radius_mm;
+    if (!is_below) duct.closed_at = cones[n].b;
+  }
+  const auto joins = static_cast<std::size_t>(kCysticDuctShare * static_cast<float>(cones.size()));
+  const Vec3f to = cones[joins].a;
+  cones.push_back({gallbladder_neck(anatomy), to, kCysticRadius, kCysticRadius});
+  duct.cones = std::move(cones);
+  return duct;
+}
+
+void add_duct_structure(Anatomy& anatomy, const std::string& name, const Tube& tube,
+                        std::function<float(const Place&)> distance) {
+  const std::uint8_t label = anatomy.label("bile_ducts");
+  anatomy.add({name, warped(tube.bounds()), std::move(distance), [=](const Place&, float d, const Brush& brush) {
+                 return Paint{mix(kWallHu, kBileHu, brush.cover(d + 0.5F)), label};
+               }});
+}
+
+void add_arteries(Anatomy& anatomy, const std::vector<Cone>& veins) {
+  const Companion artery{anatomy.data.bile_duct.artery_beside, [](float vein) { return kArteryShare * vein; }};
+  const Tube tree(companions(veins, artery));
+  if (tree.empty()) return;
+  const std::uint8_t label = anatomy.label("hepatic_artery");
+  const Structure& liver = anatomy.find("liver");
+  anatomy.add({"hepatic_artery", tree.bounds(),
+               [tree, outside = liver.distance](const Place& place) {
+                 return std::max(tree.distance(place.p), outside(place) + 0.8F);
+               },
+               [=](const Place&, float, const Brush&) {
+                 return Paint{kHepaticArteryHu, label};
+               }});
+}
+
+void add_tumour(Anatomy& anatomy, const Vec3f& centre_q) {
+  const float radius = anatomy.data.bile_duct.tumour_radius_mm;
+  const auto& noise = anatomy.noise;
+  anatomy.add_plain(
+      "tumor", warped(Box::around(centre_q, Vec3f::Constant(radius + 2.0F))),
+      [=, &noise](const Place& place) { return (place.q - centre_q).norm() - radius + 1.6F * noise(place.p / 6.0F); },
+      kTumourHu, 6.0F, 6.0F);
+}
+
+}  // namespace
+
+DuctTree add_bile_ducts(Anatomy& anatomy, const std::vector<Cone>& portal_veins) {
+  add_arteries(anatomy, portal_veins);
+  const float dilated = dilation(anatomy.body);
+  const Companion duct{anatomy.data.bile_duct.beside, [dilated](float vein) { return duct_radius(vein, dilated); }};
+  std::vector<Cone> tree = companions(portal_veins, duct);
+  OutsideDuct outside = outside_duct(anatomy);
+  if (!tree.empty()) {
+    // The confluence joins the two parts.
+    const Vec3f confluence = anatomy.unwarped(outside.cones.front().a);
+    tree.push_back({confluence, tree.front().a, outside.cones.front().radius_a, tree.front().radius_a});
+  }
+  DuctTree ducts{Tube(std::move(tree)), Tube(std::move(outside.cones))};
+  if (anatomy.body.has_obstruction) add_tumour(anatomy, outside.closed_at);
+  add_duct_structure(anatomy, "bile_duct_outside", ducts.outside,
+                     [tube = ducts.outside](const Place& place) { return tube.distance(place.q); });
+  add_duct_structure(anatomy, "bile_ducts", ducts.inside,
+                     [tube = ducts.inside](const Place& place) { return tube.distance(place.p); });
+  return ducts;
+}
+
 namespace {
 
 constexpr float kFullGallbladder = 1.25F;
@@ -81,6 +210,39 @@ void add_liver(Anatomy& anatomy) {
                [=](const Place&, float distance, const Brush& brush) {
                  return Paint{mix(75.0F, 9.0F, brush.cover(distance + 1.6F)), label};
                }});
+}
+
+namespace {
+
+/// Positive to the patient's left of the upright plane through two points.
+float left_of(const Vec3f& p, const Vec3f& from, const Vec3f& to) {
+  const Vec3f way = to - from;
+  return (way.x() * (p.y() - from.y()) - way.y() * (p.x() - from.x())) / std::hypot(way.x(), way.y());
+}
+
+// Where the right hepatic vein points to, from the vena cava: forwards and to the right.
+const Vec3f kRightVein(-85.0F, -38.0F, 0.0F);
+constexpr float kCaudateMm = 24.0F;
+
+}  // namespace
+
+std::string_view liver_segment(const Anatomy& anatomy, const Place& place) {
+  const LiverData& liver = anatomy.data.liver;
+  const Vec3f cava = liver.venous_confluence;
+  const Vec3f& q = place.q;
+  const Vec3f gallbladder(
+      0.5F * static_cast<float>(anatomy.data.gallbladder.x_mm.low + anatomy.data.gallbladder.x_mm.high),
+      anatomy.data.gallbladder.course.back().p.y(), 0.0F);
+  const Vec3f fissure(liver.fissure_x_mm, gallbladder.y(), 0.0F);
+  const bool is_upper = q.z() > liver.hilum.z() + 0.25F * (liver.hilum.y() - q.y());
+  if (std::hypot(q.x() - cava.x() - 14.0F, q.y() - cava.y()) < kCaudateMm && q.y() > liver.hilum.y()) return "I";
+  if (left_of(q, cava, gallbladder) > 0.0F) {
+    if (left_of(q, cava, fissure) < 0.0F) return "IV";
+    return is_upper ? "II" : "III";
+  }
+  const bool is_in_front = left_of(q, cava, cava + kRightVein) > 0.0F;
+  if (is_in_front) return is_upper ? "VIII" : "V";
+  return is_upper ? "VII" : "VI";
 }
 
 }  // namespace trocar::anatomy::phantom

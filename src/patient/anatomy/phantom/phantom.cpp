@@ -7,14 +7,13 @@
 #include <numbers>
 
 #include "anatomy/derive/derive_structures.h"
-#include "anatomy/phantom/abdomen.h"
+#include "anatomy/phantom/biopsy.h"
 #include "anatomy/phantom/cases.h"
-#include "anatomy/phantom/landmarks.h"
-#include "anatomy/phantom/layer_data.h"
+#include "anatomy/phantom/layer_scene.h"
 #include "anatomy/phantom/layers.h"
 #include "anatomy/phantom/render.h"
 #include "anatomy/phantom/torso_patient.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 
 namespace trocar::anatomy {
 namespace {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "anatomy/phantom/bone.h"
 #include "anatomy/phantom/structure.h"
 
 namespace trocar::anatomy::phantom {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "anatomy/phantom/bone.h"
+#include "anatomy/phantom/skeleton.h"
 
 namespace trocar::anatomy::phantom {
 namespace {

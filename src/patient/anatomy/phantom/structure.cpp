@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "anatomy/phantom/bone.h"
-#include "core/check.h"
+#include "anatomy/phantom/skeleton.h"
+#include "core/result.h"
 
 namespace trocar::anatomy::phantom {
 

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "anatomy/known_structures.h"
-#include "anatomy/label_table.h"
+#include "anatomy/patient.h"
 #include "anatomy/phantom/phantom_data.h"
 #include "anatomy/phantom/shapes.h"
 #include "anatomy/phantom/torso.h"
-#include "anatomy/posture.h"
 #include "core/result.h"
 
 namespace trocar::anatomy::phantom {

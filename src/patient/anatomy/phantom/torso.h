@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "anatomy/phantom/body_parameters.h"
+#include "anatomy/phantom/cases.h"
 #include "anatomy/phantom/phantom_data.h"
 #include "anatomy/phantom/shapes.h"
 #include "anatomy/phantom/spine_curve.h"

@@ -21,4 +21,11 @@ struct TorsoPlan {
 /// body; an unknown structure name.
 Result<TorsoPlan> build_torso(Anatomy& anatomy, const CaseDescription& description);
 
+/// The only landmark inside the body.
+inline constexpr const char* kHilumLandmark = "hilum of the liver";
+
+/// Points of the body that can be seen or felt, and the hilum of the liver, inside the anatomy's box (P of the patient,
+/// mm).
+std::vector<Landmark> find_landmarks(const Anatomy& anatomy);
+
 }  // namespace trocar::anatomy::phantom

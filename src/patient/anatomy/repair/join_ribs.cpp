@@ -4,10 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "anatomy/derive/detail/spine_labels.h"
-#include "anatomy/repair/detail/label_parts.h"
+#include "anatomy/detail/label_boxes.h"
 #include "anatomy/repair/detail/repairs.h"
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 #include "volume/distance.h"
 #include "volume/sampling.h"
 

@@ -1,6 +1,6 @@
-#include "anatomy/direction_words.h"
-
 #include <gtest/gtest.h>
+
+#include "anatomy/structure_words.h"
 
 namespace trocar::anatomy {
 namespace {

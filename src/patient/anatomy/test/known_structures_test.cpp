@@ -8,8 +8,8 @@
 
 #include "anatomy/testing/shipped_structures.h"
 #include "anatomy/testing/shipped_tissues.h"
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "core/testing/user_locale.h"
 
 namespace trocar::anatomy {

@@ -1,6 +1,6 @@
-#include "anatomy/label_table.h"
-
 #include <gtest/gtest.h>
+
+#include "anatomy/patient.h"
 
 namespace trocar::anatomy {
 namespace {

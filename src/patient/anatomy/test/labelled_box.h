@@ -5,7 +5,7 @@
 #include "anatomy/known_structures.h"
 #include "anatomy/patient.h"
 #include "anatomy/testing/shipped_structures.h"
-#include "core/check.h"
+#include "core/result.h"
 
 namespace trocar::anatomy {
 

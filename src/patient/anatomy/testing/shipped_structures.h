@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "anatomy/known_structures.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 
 namespace trocar::testing {
 

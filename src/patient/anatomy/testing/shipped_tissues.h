@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "anatomy/tissue/tissue_table.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 
 namespace trocar::testing {
 

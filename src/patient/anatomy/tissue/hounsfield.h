@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "anatomy/build_patient.h"
 #include "core/result.h"
 #include "volume/grid.h"
 
@@ -22,5 +25,16 @@ enum class AirIn { kAroundTheBody, kNowhere /* a CT that ends inside the body */
 /// tags are missing (air at 0) or applied twice, or for an exported 8-bit image. Errors state the range found. Every
 /// build calls this: without air no skin is found, and the noise of a whole volume becomes structures.
 Status check_hounsfield(const volume::CtGrid& ct, AirIn air = AirIn::kAroundTheBody);
+
+/// By how much ranges are widened on both sides.
+struct HuMargin {
+  double hu = 0.0;     ///< Of the mean.
+  double share = 0.0;  ///< Of the voxels that are gas or bone.
+};
+
+/// Labels with a mean HU, or a share of gas or bone, that is implausible for their tissue. Ranges are wide; small
+/// labels are not checked. `judged_count`: how many were.
+std::vector<Finding> find_implausible_hu(const VirtualPatient& patient, const std::vector<LabelStatistics>& statistics,
+                                         std::size_t* judged_count = nullptr, const HuMargin& margin = {});
 
 }  // namespace trocar::anatomy

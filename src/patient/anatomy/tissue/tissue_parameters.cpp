@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 
-#include "anatomy/tissue/hu_transfer_text.h"
 #include "anatomy/tissue/tissue_fields.h"
 
 namespace trocar::anatomy {

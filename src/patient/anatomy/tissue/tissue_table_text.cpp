@@ -5,9 +5,8 @@
 #include <cmath>
 #include <type_traits>
 
-#include "anatomy/tissue/hu_transfer_text.h"
 #include "anatomy/tissue/tissue_fields.h"
-#include "anatomy/tissue/tissue_setting.h"
+#include "anatomy/tissue/tissue_settings.h"
 #include "anatomy/tissue/tissue_table.h"
 
 namespace trocar::anatomy {

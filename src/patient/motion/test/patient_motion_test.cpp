@@ -1,4 +1,6 @@
 // The map between the anatomy at rest and the patient now: against closed forms, differences and its own inverse.
+#include "motion/patient_motion.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -6,7 +8,6 @@
 #include <numbers>
 #include <random>
 
-#include "motion/motion_clock.h"
 #include "motion/motion_file.h"
 
 namespace trocar::motion {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "motion/motion_clock.h"
+#include "motion/patient_motion.h"
 
 namespace trocar::motion::testing {
 

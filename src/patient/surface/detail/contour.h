@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/shapes.h"
 #include "surface/extract_surface.h"
 
 namespace trocar::surface::detail {
@@ -21,5 +22,13 @@ volume::Grid<std::uint8_t> bounded_occupancy(const volume::MaskGrid& mask, doubl
 /// Contour of a half filled voxel, smoothed and decimated with VTK's filters; in mm along the grid's axes from voxel
 /// (0,0,0), closed, triangles outward.
 TriangleMesh contour(const volume::Grid<std::uint8_t>& occupancy, const SurfaceOptions& options);
+
+/// Fills the holes of a mesh, each by a fan of triangles: afterwards every edge is walked as often in one direction as
+/// in the other. For the few triangles that a decimation loses.
+void close_holes(TriangleMesh& mesh);
+
+/// Moves all vertices along their normals by one distance, at most `max_shift_mm`, to restore the enclosed volume that
+/// was lost when its corners were rounded off.
+void restore_volume(TriangleMesh& mesh, double volume_mm3, double max_shift_mm);
 
 }  // namespace trocar::surface::detail

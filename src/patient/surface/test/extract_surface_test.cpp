@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <thread>
 
-#include "core/cancellation.h"
+#include "core/progress.h"
 #include "core/random.h"
 #include "surface/detail/contour.h"
 

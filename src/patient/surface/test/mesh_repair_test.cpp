@@ -1,6 +1,6 @@
-#include "surface/detail/mesh_repair.h"
-
 #include <gtest/gtest.h>
+
+#include "surface/detail/contour.h"
 
 namespace trocar::surface {
 namespace {

@@ -3,14 +3,12 @@
 
 #include "core/log.h"
 #include "core/version.h"
-#include "results/login_clients.h"
+#include "results/accounts.h"
 #include "results/names.h"
 #include "signing/password.h"
-#include "signing/password_rules.h"
 #include "signing/token.h"
 #include "web/api/route.h"
-#include "web/security/log_text.h"
-#include "web/security/session_cookie.h"
+#include "web/security/request_origin.h"
 
 namespace trocar::web {
 namespace {

@@ -1,8 +1,8 @@
 // People, courses and PINs: added, renamed, moved. Names of people never reach the log.
 #include "core/log.h"
-#include "results/courses.h"
+#include "results/notes.h"
 #include "web/api/route.h"
-#include "web/security/log_text.h"
+#include "web/security/request_origin.h"
 
 namespace trocar::web {
 namespace {

@@ -6,13 +6,13 @@
 #include <set>
 
 #include "core/log.h"
-#include "core/parse_number.h"
-#include "results/curves.h"
+#include "core/text.h"
+#include "results/attempt.h"
 #include "results/notes.h"
-#include "results/reasons.h"
-#include "web/api/attempt_json.h"
+#include "results/proficiency.h"
+#include "web/api/json_fields.h"
 #include "web/api/route.h"
-#include "web/security/log_text.h"
+#include "web/security/request_origin.h"
 
 namespace trocar::web {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/utf8.h"
+#include "core/text.h"
 #include "results/names.h"
 
 namespace trocar::web {
@@ -156,6 +156,24 @@ Result<HttpAnswer> cached(AnswerCache& cache, RepositoryPool& repositories, cons
     const RepositoryPool::Loan repository = repositories.borrow();
     return make(*repository);
   });
+}
+
+bool PasswordGate::enter() {
+  std::unique_lock lock(mutex_);
+  if (waiting_ >= kMostWaiting) return false;
+  ++waiting_;
+  has_left_.wait(lock, [this] { return inside_ < kMostInside; });
+  --waiting_;
+  ++inside_;
+  return true;
+}
+
+void PasswordGate::leave() {
+  {
+    const std::lock_guard lock(mutex_);
+    --inside_;
+  }
+  has_left_.notify_one();
 }
 
 }  // namespace trocar::web

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -8,20 +9,47 @@
 #include <string_view>
 #include <vector>
 
-#include "core/log_limit.h"
+#include "core/log.h"
 #include "results/accounts.h"
 #include "results/attempts.h"
 #include "signing/password.h"
 #include "web/api/json_fields.h"
-#include "web/api/password_gate.h"
-#include "web/api/titles.h"
 #include "web/message.h"
 #include "web/repository_pool.h"
 #include "web/security/login_throttle.h"
-#include "web/security/moment.h"
 #include "web/timed_cache.h"
 
 namespace trocar::web {
+
+/// Lets two threads hash passwords at a time, 64 MiB each, and a bounded number wait. Thread-safe.
+class PasswordGate {
+ public:
+  /// Room to hash one password; the destructor gives it back. False: too many wait.
+  class Pass {
+   public:
+    explicit Pass(PasswordGate& gate) : gate_(gate), is_inside_(gate.enter()) {}
+    ~Pass() {
+      if (is_inside_) gate_.leave();
+    }
+    Pass(const Pass&) = delete;
+    Pass& operator=(const Pass&) = delete;
+    explicit operator bool() const noexcept { return is_inside_; }
+
+   private:
+    PasswordGate& gate_;
+    const bool is_inside_;
+  };
+
+ private:
+  bool enter();
+  void leave();
+
+  static constexpr int kMostInside = 2;
+  static constexpr int kMostWaiting = 40;  ///< The last one waits about a second.
+  std::mutex mutex_;
+  std::condition_variable has_left_;
+  int inside_ = 0, waiting_ = 0;
+};
 
 /// Values of a metric at a task, shared by the pages that need all of them.
 using SampleCache = TimedCache<std::vector<results::MetricSample>>;

@@ -6,12 +6,12 @@
 #include <stdexcept>
 #include <thread>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/testing/no_threads.h"
 #include "web/static_files.h"
 #include "web/test/service_lab.h"
 #include "web/timed_cache.h"
-#include "web/transport/detail/worker_threads.h"
+#include "web/transport/detail/connection.h"
 
 namespace trocar::web {
 namespace {

@@ -1,12 +1,8 @@
 // Each guard alone, without sockets, clocks or a database.
 #include <gtest/gtest.h>
 
-#include "web/security/client_address.h"
-#include "web/security/log_text.h"
 #include "web/security/login_throttle.h"
 #include "web/security/request_origin.h"
-#include "web/security/security_headers.h"
-#include "web/security/session_cookie.h"
 
 namespace trocar::web {
 namespace {

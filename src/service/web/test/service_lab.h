@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "results/people.h"
 #include "web/api/json_fields.h"
 #include "web/service.h"

@@ -1,16 +1,62 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "core/result.h"
 #include "web/message.h"
-#include "web/transport/listen_address.h"
-#include "web/transport/tls_context.h"
 
 namespace trocar::web {
+
+struct ListenAddress {
+  std::string host = "127.0.0.1";  ///< A number of IPv4 or IPv6 (without brackets), or "localhost".
+  int port = 8080;                 ///< 0: any free port.
+
+  /// Whether only programs of this machine reach it: 127.0.0.0/8, ::1, "localhost".
+  bool is_loopback() const noexcept;
+  /// Whether it stands for every address of the machine: 0.0.0.0, ::.
+  bool is_any() const noexcept;
+};
+
+/// "HOST:PORT", "[::1]:PORT" or "PORT" (on 127.0.0.1). Error (exit status 2): no number of an address, no port from 0
+/// to 65535.
+Result<ListenAddress> parse_listen_address(std::string_view text);
+
+/// A host as a URL shows it: IPv6 in brackets.
+std::string url_host(const std::string& host);
+
+}  // namespace trocar::web
+
+struct ssl_ctx_st;
+
+namespace trocar::web {
+
+struct TlsFiles {
+  std::filesystem::path certificate;  ///< PEM: the server's certificate, then those between it and the root.
+  std::filesystem::path key;          ///< PEM, not encrypted.
+};
+
+/// The server's side of TLS 1.2 and 1.3, with forward secrecy and authenticated encryption only.
+class TlsContext {
+ public:
+  /// Errors: a file is missing or is no PEM file, the key is another one, other users may read the key, the
+  /// certificate has expired.
+  static Result<TlsContext> load(const TlsFiles& files);
+
+  /// Whether the certificate names this host (subjectAltName, wildcards too); `host` is a name or a number.
+  bool names(const std::string& host) const;
+
+  ssl_ctx_st* get() const noexcept { return context_.get(); }
+
+ private:
+  explicit TlsContext(std::shared_ptr<ssl_ctx_st> context) : context_(std::move(context)) {}
+  std::shared_ptr<ssl_ctx_st> context_;
+};
 
 struct ServerOptions {
   ListenAddress listen;

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "haptics/haptic_scene.h"
-#include "haptics/insertion/soft_column.h"
+#include "haptics/insertion/insertion_path.h"
 
 namespace trocar::haptics {
 

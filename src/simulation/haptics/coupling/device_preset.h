@@ -8,10 +8,19 @@
 
 #include "core/result.h"
 #include "geometry/pose.h"
-#include "haptics/closed_loop/encoder.h"
 #include "haptics/haptic_scene.h"
 
 namespace trocar::haptics {
+
+/// Resolution of a device's sensors.
+struct EncoderParams {
+  double count_mm = 0.0295;   ///< One count of position. Range 0.0001..1; 0: exact.
+  double count_rad = 4.0e-5;  ///< One count of an angle. Range 1e-6..0.1; 0: exact.
+};
+
+/// Quantised pose: position rounded to counts on every axis, the rotation vector likewise; the error is at most half a
+/// count per axis. Real-time safe.
+Pose quantise(const Pose& X_DS, const EncoderParams& encoder) noexcept;
 
 /// A haptic device as data (data/devices.toml): its capability, and the coupling used with it.
 struct DevicePreset {
@@ -52,5 +61,23 @@ DeviceCapability scene_capability(const DevicePreset& preset) noexcept;
 
 /// Sets the options of a scene for this device: its coupling, and no constraint stiffer than that coupling.
 void apply_device_preset(const DevicePreset& preset, HapticOptions& options) noexcept;
+
+/// Limits of a coupling, in the patient's newtons and millimetres.
+struct CouplingLimits {
+  double most_n_per_mm = 3.5;     ///< Stiffest spring that the device can render.
+  double most_ns_per_mm = 0.005;  ///< Largest damping that the device can render at 1 kHz.
+  double least_n_per_mm = 0.05;   ///< Lower limit; a softer coupling renders no useful tissue force. [assumed]
+  /// Largest ratio of damping to stiffness; B7 and C3 predict the pose by this time. [assumed]
+  double longest_s = 0.01;
+};
+
+/// Limits of a device: its greatest stiffness and damping, divided by its scales. A device without motors only displays
+/// a force and accepts any damping up to that of the defaults above.
+CouplingLimits limits_of(const DevicePreset& preset) noexcept;
+/// The nearest coupling within the limits; a softer spring keeps its damping time.
+CouplingParams within(const CouplingParams& coupling, const CouplingLimits& limits) noexcept;
+/// Errors (exit status 2): the first number outside its limits, with the limits. The rotational coupling has no
+/// parameters of its own: it equals that of two springs as far apart as the tool is wide (physics.md B9).
+Status check(const CouplingParams& coupling, const CouplingLimits& limits);
 
 }  // namespace trocar::haptics

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptics/gate/detail/gate_stages.h"
+#include "haptics/gate/gate_stages.h"
 
 namespace trocar::haptics {
 namespace {

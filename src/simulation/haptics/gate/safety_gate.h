@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "core/result.h"
-#include "geometry/wrench.h"
+#include "geometry/vec.h"
 #include "haptics/haptic_scene.h"  // CouplingParams
-#include "telemetry/gate_state.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::haptics {
 

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "haptics/haptic_scene.h"
-#include "haptics/patient_now.h"
 
 namespace trocar::haptics {
 

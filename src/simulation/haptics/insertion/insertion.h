@@ -5,8 +5,6 @@
 
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion/insertion_path.h"
-#include "haptics/insertion/skin_contact.h"
-#include "haptics/insertion/soft_column.h"
 #include "haptics/proxy/body_proxies.h"
 #include "telemetry/tick_sample.h"
 

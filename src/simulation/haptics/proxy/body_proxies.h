@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "geometry/wrench.h"
+#include "geometry/vec.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/insertion/channel.h"
 #include "haptics/proxy/needle_beam.h"

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "haptics/insertion/insertion_law.h"
-#include "haptics/insertion/skin_contact.h"
-#include "haptics/proxy/needle_balance.h"
+#include "haptics/insertion/insertion_path.h"
 #include "haptics/proxy/tip_law.h"
 #include "volume/sampling.h"
 

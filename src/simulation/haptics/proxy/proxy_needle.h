@@ -2,7 +2,6 @@
 
 #include "haptics/insertion/insertion.h"
 #include "haptics/insertion/insertion_path.h"
-#include "haptics/insertion/skin_contact.h"
 #include "haptics/proxy/body_proxies.h"
 
 namespace trocar::haptics {

@@ -8,7 +8,7 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.inc.h"
-#include "haptics/closed_loop/virtual_device.h"
+#include "haptics/coupling/virtual_stylus.h"
 #include "haptics/test/layered_patient.h"
 #include "haptics/test/tick_period.h"
 

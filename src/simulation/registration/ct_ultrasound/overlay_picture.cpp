@@ -6,8 +6,8 @@
 
 #include "core/parallel.h"
 #include "registration/ct_ultrasound/detail/working_images.h"
-#include "registration/intensity/bright_gray.h"
-#include "volume/bitmap_font.h"
+#include "registration/intensity/gray_levels.h"
+#include "volume/image.h"
 #include "volume/sampling.h"
 
 namespace trocar::registration {

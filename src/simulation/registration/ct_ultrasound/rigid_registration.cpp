@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
-#include "core/part_of_progress.h"
+#include "core/progress.h"
 #include "core/random.h"
 #include "registration/ct_ultrasound/detail/pose_metric.h"
 #include "registration/ct_ultrasound/detail/skin_starts.h"

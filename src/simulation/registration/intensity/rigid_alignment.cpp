@@ -6,8 +6,8 @@
 #include <cmath>
 #include <span>
 
-#include "core/check.h"
 #include "core/parallel.h"
+#include "core/result.h"
 
 namespace trocar::registration {
 namespace {

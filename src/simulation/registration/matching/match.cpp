@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/parallel.h"
 #include "registration/matching/detail/nearest.h"
 
 namespace trocar::registration {
@@ -63,6 +64,77 @@ Result<std::vector<Match>> match(const KeypointSet& a, const KeypointSet& b, con
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
   std::erase_if(matches, [&](const Match& m) { return !pairs.insert({m.a, m.b}).second; });
   return matches;
+}
+
+namespace {
+
+constexpr std::int64_t kEdge = 8;  ///< Voxels.
+
+/// Share of the usable voxels darker than each gray level, half of those of the level included, in bins.
+std::array<float, 256> rank_bins(const volume::LabelGrid& gray, const volume::MaskGrid& usable) {
+  std::array<double, 256> counts{};
+  double total = 0.0;
+  for (std::size_t n = 0; n < gray.voxels.size(); ++n) {
+    if (usable.voxels[n] == 0) continue;
+    counts[gray.voxels[n]] += 1.0;
+    total += 1.0;
+  }
+  std::array<float, 256> bins{};
+  double below = 0.0;
+  for (std::size_t g = 0; g < counts.size(); ++g) {
+    bins[g] = total > 0.0 ? static_cast<float>(kGrayBins * (below + 0.5 * counts[g]) / total) : 0.0F;
+    below += counts[g];
+  }
+  return bins;
+}
+
+}  // namespace
+
+std::vector<GrayHistogram> gray_histograms(const volume::LabelGrid& gray, const volume::MaskGrid& usable,
+                                           const std::vector<Keypoint>& keypoints) {
+  const std::array<float, 256> bins = rank_bins(gray, usable);
+  const auto& geometry = gray.geometry;
+  std::vector<GrayHistogram> histograms(keypoints.size());
+  parallel_for(keypoints.size(), 64, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) {
+      GrayHistogram& histogram = histograms[n];
+      histogram.fill(0.0F);
+      const Vec3 centre = geometry.to_index(keypoints[n].p_P);
+      volume::Index3 begin, end;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const auto low = static_cast<std::int64_t>(std::ceil(centre[static_cast<Eigen::Index>(a)] - kEdge / 2));
+        begin[a] = std::max<std::int64_t>(0, low);
+        end[a] = std::min(geometry.size[a], low + kEdge);
+      }
+      float total = 0.0F;
+      for (std::int64_t k = begin[2]; k < end[2]; ++k) {
+        for (std::int64_t j = begin[1]; j < end[1]; ++j) {
+          for (std::int64_t i = begin[0]; i < end[0]; ++i) {
+            const std::size_t at = geometry.offset({i, j, k});
+            if (usable.voxels[at] == 0) continue;
+            const int bin = std::clamp(static_cast<int>(bins[gray.voxels[at]]), 0, kGrayBins - 1);
+            histogram[static_cast<std::size_t>(bin)] += 1.0F;
+            total += 1.0F;
+          }
+        }
+      }
+      if (total > 0.0F)
+        for (float& share : histogram) share /= total;
+    }
+  });
+  return histograms;
+}
+
+double histogram_distance(const GrayHistogram& a, const GrayHistogram& b) noexcept {
+  constexpr std::size_t kTogether = 4;
+  double sum = 0.0;
+  for (std::size_t first = 0; first < a.size(); first += kTogether) {
+    double difference = 0.0;
+    for (std::size_t n = first; n < first + kTogether; ++n)
+      difference += static_cast<double>(a[n]) - static_cast<double>(b[n]);
+    sum += std::abs(difference);
+  }
+  return 0.5 * sum;
 }
 
 }  // namespace trocar::registration

@@ -4,7 +4,7 @@
 
 #include "core/progress.h"
 #include "core/result.h"
-#include "registration/panorama/prepared_volume.h"
+#include "registration/panorama/pair_registration.h"
 
 namespace trocar::registration {
 

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-#include "core/parse_number.h"
+#include "core/text.h"
 
 namespace trocar::registration {
 namespace {

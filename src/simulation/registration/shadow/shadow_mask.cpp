@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "core/check.h"
 #include "core/parallel.h"
+#include "core/result.h"
 #include "volume/sampling.h"
 
 namespace trocar::registration {

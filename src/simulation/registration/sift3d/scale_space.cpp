@@ -6,9 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/check.h"
 #include "core/parallel.h"
-#include "volume/gaussian_blur.h"
+#include "core/result.h"
 #include "volume/resample.h"
 #include "volume/sampling.h"
 

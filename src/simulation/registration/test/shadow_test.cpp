@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "registration/intensity/bright_gray.h"
+#include "registration/intensity/gray_levels.h"
 #include "registration/shadow/shadow_mask.h"
 
 namespace trocar::registration {

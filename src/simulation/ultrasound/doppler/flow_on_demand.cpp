@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/live/live_thread.h"
+#include "core/live/live_schedule.h"
 #include "core/log.h"
 #include "core/parallel.h"
 

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "ultrasound/engine/detail/aperture_paths.h"
 #include "ultrasound/engine/detail/clutter.h"
 #include "ultrasound/engine/detail/frame_state.h"
-#include "ultrasound/engine/detail/line_groups.h"
-#include "ultrasound/engine/detail/multiple_echoes.h"
 #include "ultrasound/engine/detail/needle_image.h"
 #include "ultrasound/engine/detail/point_echo.h"
 #include "ultrasound/engine/detail/point_spread.h"
@@ -19,7 +17,6 @@
 #include "ultrasound/engine/detail/surface_echo.h"
 #include "ultrasound/engine/detail/tissue_texture.h"
 #include "ultrasound/engine/detail/tissue_walk.h"
-#include "ultrasound/engine/detail/tissue_walls.h"
 
 namespace trocar::ultrasound {
 using namespace detail;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "ultrasound/probe/scan_geometry.h"
 #include "ultrasound/probe/transducer.h"
 
 namespace trocar::ultrasound {
@@ -62,5 +64,11 @@ std::optional<double> harmonic_mhz(const Transducer& transducer, double wanted_m
 Beam make_harmonic_beam(const Transducer& transducer, double received_mhz, double focus_mm);
 /// Beam::downshift_per_mm in tissue with the nominal attenuation.
 double nominal_downshift_per_mm(const Beam& beam) noexcept;
+
+/// Amplitude of the harmonic at each sample of a scanline, over that at the focus. docs/physics.md U19.
+std::vector<float> harmonic_levels(const Beam& beam, const ScanGeometry& geometry);
+/// Gain (dB) with which a scanner makes up for a level: its inverse, at most kMostHarmonicGain_db.
+double harmonic_gain_db(float level) noexcept;
+inline constexpr double kMostHarmonicGain_db = 24.0;  ///< Near the face there is no harmonic yet. [assumed]
 
 }  // namespace trocar::ultrasound

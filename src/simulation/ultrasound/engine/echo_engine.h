@@ -2,17 +2,51 @@
 
 #include <limits>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "core/result.h"
 #include "geometry/pose.h"
+#include "geometry/vec.h"
 #include "motion/patient_motion.h"
-#include "ultrasound/engine/artefacts.h"
 #include "ultrasound/engine/beam.h"
-#include "ultrasound/engine/needle_echo.h"
 #include "ultrasound/probe/scan_geometry.h"
 #include "ultrasound/probe/transducer.h"
 
 namespace trocar::ultrasound {
+
+/// Deviations from straight propagation and single reflection; each can be switched off.
+struct Artefacts {
+  bool attenuation = true;       ///< Shadow behind bone and gas, enhancement behind fluid.
+  bool downshift = true;         ///< Attenuation lowers the centre frequency: deeper echoes are wider and louder.
+  bool reverberation = true;     ///< A-lines, ring-down at gas.
+  bool mirror = true;            ///< Mirror image at a strong, smooth reflector (the diaphragm).
+  bool refraction = true;        ///< Edge shadows, bent scanlines.
+  bool range_distortion = true;  ///< Depth follows from time; the speed of sound differs between tissues.
+  bool side_lobes = true;        ///< Side lobes.
+  bool contact_loss = true;      ///< Air where the face has no contact with the skin.
+  bool clutter = true;           ///< Haze of the near field, and of what is beside the beam.
+  bool noise = true;             ///< Noise of the receiver; increases with depth because the gain does.
+
+  bool operator==(const Artefacts&) const = default;
+};
+
+/// "attenuation", "downshift", "reverberation", "mirror", "refraction", "range-distortion", "side-lobes",
+/// "contact-loss", "clutter", "noise".
+std::vector<std::string_view> artefact_names();
+/// Switches one off, or "all". An unknown name is an error that lists the names (exit status 2).
+Status switch_off(Artefacts& artefacts, std::string_view name);
+
+/// Acoustic model of a needle. Frame P, mm. A needle with non-finite values, or shorter than its point, has no echo.
+struct NeedleEcho {
+  std::span<const Vec3> shaft_P;  ///< Polyline from the hub to the tip; bent needles have more than two points.
+  double diameter_mm = 1.2;       ///< Range 0.2..5.
+  double tip_mm = 3.0;  ///< Length of the roughened or bevelled tip, which reflects in all directions. Range 0..30.
+  double displacement_mm = 0.0;  ///< Displacement of tissue at the tip along the axis. Range -10..10.
+  /// Diameter of the bore, filled with fluid, divided by the outer diameter; 0 with the stylet in. Range 0..0.9. 18 G,
+  /// regular wall: 0.84 of 1.27 mm (ISO 9626).
+  double bore_share = 0.66;
+};
 
 /// Settings of transmission and reception: the scanner controls that act before the echoes are computed.
 struct Acquisition {

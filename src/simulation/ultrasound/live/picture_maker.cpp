@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "ultrasound/doppler/colour_doppler.h"
 #include "ultrasound/doppler/detail/colour_conversion.h"
 #include "ultrasound/engine/b_mode.h"

@@ -6,15 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/engine/detail/aperture_paths.h"
 #include "ultrasound/engine/detail/clutter.h"
-#include "ultrasound/engine/detail/line_groups.h"
+#include "ultrasound/engine/detail/frame_state.h"
 #include "ultrasound/engine/detail/needle_image.h"
 #include "ultrasound/engine/detail/point_spread.h"
 #include "ultrasound/panorama/detail/hard_shadows.h"
-#include "ultrasound/panorama/detail/haze_pattern.h"
 #include "ultrasound/panorama/detail/panorama_blend.h"
 #include "ultrasound/panorama/detail/panorama_sampler.h"
 #include "ultrasound/scanner/display_settings.h"

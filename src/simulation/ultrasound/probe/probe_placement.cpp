@@ -12,7 +12,7 @@
 
 #include "ultrasound/probe/detail/view_anatomy.h"
 #include "ultrasound/probe/detail/view_rays.h"
-#include "ultrasound/probe/face_fit.h"
+#include "ultrasound/probe/probe_contact.h"
 #include "ultrasound/probe/scan_geometry.h"
 
 namespace trocar::ultrasound {

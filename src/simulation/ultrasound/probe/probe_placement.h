@@ -5,7 +5,6 @@
 #include "geometry/pose.h"
 #include "ultrasound/probe/probe_view.h"
 #include "ultrasound/probe/transducer.h"
-#include "ultrasound/probe/view_visibility.h"
 
 namespace trocar::ultrasound {
 

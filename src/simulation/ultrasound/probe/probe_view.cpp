@@ -8,9 +8,11 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "config/toml.h"
-#include "ultrasound/probe/detail/label_pattern.h"
+#include "ultrasound/probe/detail/view_anatomy.h"
+#include "ultrasound/probe/detail/view_rays.h"
 
 namespace trocar::ultrasound {
 namespace {
@@ -173,6 +175,27 @@ Result<ProbeView> choose_view(const anatomy::VirtualPatient& patient, std::span<
   return fail_usage(missing_text(*it, *missing), patient.name,
                     possible.empty() ? "no standard view fits this patient: give --pose FILE.tfm"
                                      : fmt::format("available views: {}", fmt::join(possible, ", ")));
+}
+
+Result<ViewVisibility> measure_visibility(const anatomy::VirtualPatient& patient, const ProbeView& view,
+                                          const Transducer& transducer, const Pose& X_PT) {
+  TROCAR_TRY(const Vec3 target_P, detail::find_target_point(patient, view));
+  const detail::ViewAnatomy ground(patient, view);
+  return detail::ViewRays(ground, view, transducer, target_P).measure(X_PT);
+}
+
+std::string hidden_causes(const ViewVisibility& visibility) {
+  constexpr double kLeast = 0.005;
+  std::vector<std::pair<double, const char*>> causes = {{visibility.behind_bone, "behind bone"},
+                                                        {visibility.behind_gas, "behind gas or lung"},
+                                                        {visibility.unscanned, "outside the CT"},
+                                                        {visibility.outside_picture, "outside the picture"},
+                                                        {visibility.too_deep, "too deep for the frequency"}};
+  std::stable_sort(causes.begin(), causes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::string> texts;
+  for (const auto& [share, text] : causes)
+    if (share >= kLeast) texts.push_back(fmt::format("{:.0f} % {}", 100.0 * share, text));
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 }  // namespace trocar::ultrasound

@@ -3,7 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "config/toml.h"
+#include "ultrasound/scanner/scanner.h"
 
 namespace trocar::ultrasound {
 namespace {
@@ -142,6 +148,97 @@ std::uint8_t gray_of_level(double level_db, const DisplaySettings& settings) noe
   const double below_white_db = kWhite_db - level_db - settings.gain_db;
   const double x = std::clamp(1.0 - below_white_db / settings.dynamic_range_db, 0.0, 1.0);
   return static_cast<std::uint8_t>(std::lround(255.0 * mapped(settings.gray_map, x)));
+}
+
+namespace {
+
+constexpr double kBrighterShare = 1.0 / 3.0;  ///< Of the samples with an echo, brighter than tissue. [assumed]
+constexpr double kLeastEchoes = 0.1;          ///< Share of the scan. [assumed]
+constexpr double kLeastGain_db = -40.0, kMostGain_db = 40.0;
+constexpr double kStep_db = 0.25;
+
+/// The level that a share of the samples with an echo exceeds; empty: too few of them.
+std::optional<std::uint8_t> tissue_level(std::span<const std::uint8_t> levels) {
+  std::array<std::size_t, 256> counts{};
+  for (const std::uint8_t level : levels) ++counts[level];
+  const std::size_t echoes = levels.size() - counts[0];
+  if (levels.empty() || static_cast<double>(echoes) < kLeastEchoes * static_cast<double>(levels.size()))
+    return std::nullopt;
+  std::size_t brighter = 0;
+  for (std::size_t level = counts.size() - 1; level > 0; --level) {
+    brighter += counts[level];
+    if (static_cast<double>(brighter) >= kBrighterShare * static_cast<double>(echoes))
+      return static_cast<std::uint8_t>(level);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> automatic_gain_db(std::span<const std::uint8_t> levels, const DisplaySettings& settings) {
+  const auto level = tissue_level(levels);
+  if (!level) return std::nullopt;
+  DisplaySettings tried = settings;
+  for (tried.gain_db = kLeastGain_db; tried.gain_db < kMostGain_db; tried.gain_db += kStep_db)
+    if (gray_of_level(Scanner::level_db(*level), tried) >= kAutomaticGray) break;
+  return tried.gain_db;
+}
+
+namespace {
+
+Status read_if_given(const config::TomlTable& row, std::string_view key, config::Range range,
+                     std::optional<double>& value) {
+  if (!row.has(key)) return {};
+  TROCAR_TRY(value, row.number(key, range));
+  return {};
+}
+
+Result<ScanPreset> read_preset(const config::TomlTable& row, const std::string& name) {
+  TROCAR_TRY_STATUS(
+      row.check_keys({"title", "transducer", "depth_mm", "frequency_mhz", "focus_mm", "gain_db", "dynamic_range_db",
+                      "gray_map", "persistence", "has_doppler", "doppler_scale_cm_per_s"}));
+  ScanPreset preset;
+  preset.name = name;
+  TROCAR_TRY(preset.title, row.string("title"));
+  TROCAR_TRY(preset.transducer, row.string("transducer"));
+  TROCAR_TRY_STATUS(read_if_given(row, "depth_mm", {20.0, 300.0}, preset.depth_mm));
+  TROCAR_TRY_STATUS(read_if_given(row, "frequency_mhz", {1.0, 20.0}, preset.frequency_mhz));
+  TROCAR_TRY_STATUS(read_if_given(row, "focus_mm", {5.0, 300.0}, preset.focus_mm));
+  DisplaySettings& display = preset.display;
+  TROCAR_TRY(display.gain_db, row.number_or("gain_db", {-40.0, 40.0}, display.gain_db));
+  TROCAR_TRY(display.dynamic_range_db, row.number_or("dynamic_range_db", {20.0, 100.0}, display.dynamic_range_db));
+  TROCAR_TRY(display.persistence, row.number_or("persistence", {0.0, 0.95}, display.persistence));
+  TROCAR_TRY(const std::string map, row.string_or("gray_map", std::string(name_of(display.gray_map))));
+  const Result<GrayMap> gray_map = parse_gray_map(map);
+  if (!gray_map) return fail("there is no gray map \"" + map + "\"", row.where(), "use linear, soft or high-contrast");
+  display.gray_map = *gray_map;
+  TROCAR_TRY(preset.has_doppler, row.boolean_or("has_doppler", false));
+  TROCAR_TRY(preset.doppler_scale_cm_per_s,
+             row.number_or("doppler_scale_cm_per_s", {2.0, 200.0}, preset.doppler_scale_cm_per_s));
+  return preset;
+}
+
+}  // namespace
+
+Result<std::vector<ScanPreset>> load_scan_presets(const std::filesystem::path& path) {
+  TROCAR_TRY(const config::TomlTable document, config::load_toml(path));
+  TROCAR_TRY_STATUS(document.check_keys({"presets"}));
+  TROCAR_TRY(const config::TomlTable rows, document.table("presets"));
+  std::vector<ScanPreset> presets;
+  for (const std::string& name : rows.keys()) {
+    TROCAR_TRY(const config::TomlTable row, rows.table(name));
+    TROCAR_TRY(ScanPreset preset, read_preset(row, name));
+    presets.push_back(std::move(preset));
+  }
+  return presets;
+}
+
+Acquisition acquisition_of(const ScanPreset& preset, const Transducer& transducer) {
+  Acquisition acquisition = default_acquisition(transducer);
+  acquisition.depth_mm = preset.depth_mm.value_or(acquisition.depth_mm);
+  acquisition.frequency_mhz = preset.frequency_mhz.value_or(acquisition.frequency_mhz);
+  acquisition.focus_mm = preset.focus_mm.value_or(acquisition.focus_mm);
+  return acquisition;
 }
 
 }  // namespace trocar::ultrasound

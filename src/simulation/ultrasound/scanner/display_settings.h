@@ -2,9 +2,16 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/result.h"
+#include "ultrasound/doppler/doppler_settings.h"
+#include "ultrasound/engine/b_mode.h"
 
 namespace trocar::ultrasound {
 
@@ -56,5 +63,30 @@ inline constexpr double kWhite_db = 15.0;
 /// Gray of a level after TGC and before gain, dB relative to liver's speckle (docs/physics.md U11). Increases with the
 /// level. 0..255. Real-time safe.
 std::uint8_t gray_of_level(double level_db, const DisplaySettings& settings) noexcept;
+
+/// Gray that the automatic gain gives the brightness of tissue. Assumed: a mid gray on the dark side, as scanners do.
+inline constexpr int kAutomaticGray = 96;
+
+/// Gain (dB) with which the tissue of a frame has the gray kAutomaticGray with the other display settings, as a
+/// scanner's button for automatic gain sets it. `levels`: of the scan, see Scanner::levels(). Tissue: the level that a
+/// third of the samples with an echo exceed. Within the range of the gain; empty where less than a tenth of the scan
+/// has an echo (a transducer in the air).
+std::optional<double> automatic_gain_db(std::span<const std::uint8_t> levels, const DisplaySettings& settings);
+
+/// Settings of a scanner for an examination (data/scan_presets.toml).
+struct ScanPreset {
+  std::string name;                                         ///< "liver-biopsy".
+  std::string title;                                        ///< "Liver biopsy".
+  std::string transducer;                                   ///< A name of data/transducers.toml.
+  std::optional<double> depth_mm, frequency_mhz, focus_mm;  ///< Empty: the transducer's own.
+  DisplaySettings display;
+  bool has_doppler = false;
+  double doppler_scale_cm_per_s = 30.0;
+};
+
+/// All presets of a file. Errors name file, preset and key: unknown key, out of range.
+Result<std::vector<ScanPreset>> load_scan_presets(const std::filesystem::path& path);
+/// The transducer's acquisition with the preset applied.
+Acquisition acquisition_of(const ScanPreset& preset, const Transducer& transducer);
 
 }  // namespace trocar::ultrasound

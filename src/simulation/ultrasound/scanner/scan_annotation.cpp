@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volume/bitmap_font.h"
+#include "volume/image.h"
 
 namespace trocar::ultrasound {
 namespace {

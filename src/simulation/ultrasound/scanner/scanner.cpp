@@ -6,9 +6,9 @@
 #include <functional>
 #include <optional>
 
-#include "core/check.h"
 #include "core/parallel.h"
-#include "ultrasound/engine/harmonic_levels.h"
+#include "core/result.h"
+#include "ultrasound/engine/beam.h"
 #include "ultrasound/scanner/detail/receiver.h"
 #include "ultrasound/scanner/detail/scan_conversion.h"
 #include "ultrasound/scanner/detail/scanner_kernels.h"

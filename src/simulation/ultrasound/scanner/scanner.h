@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "ultrasound/engine/artefacts.h"
 #include "ultrasound/engine/b_mode.h"
+#include "ultrasound/engine/echo_engine.h"
 #include "ultrasound/probe/scan_geometry.h"
 #include "ultrasound/scanner/display_settings.h"
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/check.h"
 #include "core/parallel.h"
+#include "core/result.h"
 #include "ultrasound/sweep/detail/hole_filling.h"
 #include "ultrasound/sweep/detail/limits.h"
-#include "ultrasound/sweep/transform_graph.h"
+#include "ultrasound/sweep/tracked_sequence.h"
 #include "ultrasound/tissue/detail/slice_insertion.h"
 
 namespace trocar::ultrasound {

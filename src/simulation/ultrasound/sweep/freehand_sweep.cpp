@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
 #include "core/random.h"
+#include "core/result.h"
 #include "ultrasound/scanner/scanner.h"
 #include "ultrasound/sweep/mechanical_sweep.h"
 #include "volume/sampling.h"

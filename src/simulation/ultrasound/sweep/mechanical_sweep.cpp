@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/check.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/result.h"
 #include "ultrasound/scanner/scanner.h"
 #include "ultrasound/sweep/detail/limits.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "lab/ultrasound/image_statistics.h"
 #include "lab/ultrasound/speckle_statistics.h"
 #include "lab/ultrasound/test_scenes.h"

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/check.h"
 #include "core/parallel.h"
-#include "ultrasound/tissue/detail/kidney_parts.h"
+#include "core/result.h"
 #include "ultrasound/tissue/detail/slice_blend.h"
 #include "ultrasound/tissue/detail/strands.h"
 #include "ultrasound/tissue/detail/tissue_volume.h"

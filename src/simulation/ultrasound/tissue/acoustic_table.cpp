@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/sourced_number.h"
+#include "config/toml.h"
 
 namespace trocar::ultrasound {
 namespace {

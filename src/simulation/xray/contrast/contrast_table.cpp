@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "config/sourced_number.h"
+#include "config/toml.h"
 
 namespace trocar::xray {
 namespace {

@@ -6,7 +6,6 @@
 #include "xray/contrast/contrast_table.h"
 #include "xray/contrast/detail/duct_outline.h"
 #include "xray/contrast/duct_tree.h"
-#include "xray/contrast/iodine.h"
 
 namespace trocar::xray {
 

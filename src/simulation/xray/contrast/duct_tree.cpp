@@ -6,14 +6,13 @@
 #include <limits>
 #include <numbers>
 
-#include "core/check.h"
 #include "core/parallel.h"
-#include "geometry/segment.h"
+#include "core/result.h"
+#include "geometry/shapes.h"
 #include "volume/centreline.h"
 #include "volume/distance.h"
+#include "xray/contrast/contrast_table.h"
 #include "xray/contrast/detail/duct_ends.h"
-#include "xray/contrast/detail/duct_mask.h"
-#include "xray/contrast/iodine.h"
 
 namespace trocar::xray {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "volume/resample.h"
 #include "volume/sampling.h"
-#include "xray/contrast/iodine.h"
+#include "xray/contrast/contrast_table.h"
 
 namespace trocar::xray {
 namespace {

@@ -7,7 +7,6 @@
 #include "anatomy/patient.h"
 #include "xray/contrast/contrast_table.h"
 #include "xray/contrast/detail/vessel_course.h"
-#include "xray/contrast/iodine.h"
 
 namespace trocar::xray {
 

@@ -3,11 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
-#include "core/check.h"
 #include "core/parallel.h"
-#include "xray/detector/image_blur.h"
-#include "xray/fluoroscopy/detail/resample_image.h"
+#include "core/result.h"
+#include "xray/detector/scatter.h"
+
+namespace trocar::xray::detail {
+
+/// Bilinear values of an image on another raster over the same area. All cores.
+std::vector<float> resample_image(const std::vector<float>& image, int columns, int rows, int new_columns,
+                                  int new_rows);
+
+}  // namespace trocar::xray::detail
 
 namespace trocar::xray {
 namespace {
@@ -189,4 +197,95 @@ GrayImage to_gray(std::span<const float> values, int columns, int rows, const Gr
   return image;
 }
 
+namespace {
+
+constexpr float kWeight = 0.7F;  ///< Of the road map where it is shown fully.
+constexpr std::size_t kGrainSubtracted = 16384;
+
+}  // namespace
+
+void MaskSubtraction::clear() noexcept {
+  sum_.clear();
+  frames_ = 0;
+}
+
+void MaskSubtraction::add_mask(std::span<const float> signal) {
+  if (sum_.size() != signal.size()) {
+    sum_.assign(signal.size(), 0.0F);
+    frames_ = 0;
+  }
+  for (std::size_t n = 0; n < signal.size(); ++n) sum_[n] += signal[n];
+  ++frames_;
+}
+
+std::vector<float> MaskSubtraction::difference(std::span<const float> signal) const {
+  std::vector<float> difference(signal.size(), 0.0F);
+  if (frames_ == 0 || sum_.size() != signal.size()) return difference;
+  const float share = 1.0F / static_cast<float>(frames_);
+  parallel_for(signal.size(), kGrainSubtracted, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n)
+      difference[n] = std::log(std::max(sum_[n] * share, kLeastSignal) / std::max(signal[n], kLeastSignal));
+  });
+  return difference;
+}
+
+void RoadMap::add(std::span<const float> difference) {
+  if (greatest_.size() != difference.size()) {
+    greatest_.assign(difference.begin(), difference.end());
+    return;
+  }
+  for (std::size_t n = 0; n < difference.size(); ++n) greatest_[n] = std::max(greatest_[n], difference[n]);
+}
+
+void RoadMap::overlay(float least, float full, GrayImage& image) const {
+  if (greatest_.size() != image.pixels.size()) return;
+  const float scale = kWeight / std::max(full - least, 1e-6F);
+  for (std::size_t n = 0; n < greatest_.size(); ++n) {
+    const float share = std::clamp(scale * (greatest_[n] - least), 0.0F, kWeight);
+    const auto gray = static_cast<float>(image.pixels[n]);
+    image.pixels[n] = static_cast<std::uint8_t>(gray + share * (255.0F - gray) + 0.5F);
+  }
+}
+
 }  // namespace trocar::xray
+
+namespace trocar::xray::detail {
+namespace {
+
+constexpr std::size_t kGrainResampledRows = 32;
+
+}  // namespace
+
+std::vector<float> resample_image(const std::vector<float>& image, int columns, int rows, int new_columns,
+                                  int new_rows) {
+  struct Place {
+    std::size_t first, second;
+    float weight;
+  };
+  const auto place = [](int n, int fine, int coarse) {
+    const double x = std::clamp((n + 0.5) * coarse / fine - 0.5, 0.0, coarse - 1.0);
+    const auto first = static_cast<std::size_t>(x);
+    return Place{first, std::min(first + 1, static_cast<std::size_t>(coarse - 1)),
+                 static_cast<float>(x - static_cast<double>(first))};
+  };
+  std::vector<Place> across;
+  for (int n = 0; n < new_columns; ++n) across.push_back(place(n, new_columns, columns));
+  std::vector<float> made(static_cast<std::size_t>(new_columns) * static_cast<std::size_t>(new_rows));
+  parallel_for(static_cast<std::size_t>(new_rows), kGrainResampledRows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const Place y = place(static_cast<int>(row), new_rows, rows);
+      const float* const above = image.data() + y.first * static_cast<std::size_t>(columns);
+      const float* const below = image.data() + y.second * static_cast<std::size_t>(columns);
+      float* const to = made.data() + row * static_cast<std::size_t>(new_columns);
+      for (std::size_t n = 0; n < across.size(); ++n) {
+        const Place& x = across[n];
+        const float left = above[x.first] + y.weight * (below[x.first] - above[x.first]);
+        const float right = above[x.second] + y.weight * (below[x.second] - above[x.second]);
+        to[n] = left + x.weight * (right - left);
+      }
+    }
+  });
+  return made;
+}
+
+}  // namespace trocar::xray::detail

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <optional>
 
-#include "xray/detector/image_blur.h"
-#include "xray/detector/lag.h"
-#include "xray/detector/quantum_noise.h"
-#include "xray/fluoroscopy/detail/added_signal.h"
+#include "xray/detector/detector.h"
+#include "xray/detector/scatter.h"
 #include "xray/fluoroscopy/detail/patient_image.h"
-#include "xray/fluoroscopy/subtraction.h"
+#include "xray/fluoroscopy/display.h"
 
 namespace trocar::xray {
 namespace {

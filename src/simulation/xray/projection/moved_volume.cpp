@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "xray/projection/detail/packed_volume.h"
 #include "xray/projection/detail/rest_lattice.h"
+#include "xray/projection/detail/row_stack.h"
 
 namespace trocar::xray {
 namespace {

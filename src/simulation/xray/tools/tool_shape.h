@@ -1,11 +1,18 @@
 #pragma once
 
+#include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/result.h"
 #include "geometry/pose.h"
+#include "motion/patient_motion.h"
+#include "xray/contrast/contrast_table.h"
+#include "xray/contrast/duct_tree.h"
 #include "xray/geometry/c_arm.h"
-#include "xray/projection/mass_image.h"
+#include "xray/projection/xray_volume.h"
 
 namespace trocar::xray {
 
@@ -25,5 +32,43 @@ struct ToolShape {
 /// magnification. The ends are flat. Tools behind the source, not finite or without a radius are left out.
 /// docs/physics.md, X7.
 void add_tools(const std::vector<ToolShape>& tools, const XrayRays& rays, MassImage& masses);
+
+/// A guide wire, catheter or marker of data/xray_tools.toml, without a place.
+struct ToolKind {
+  std::string name;   ///< "guide-wire"
+  std::string title;  ///< For people.
+  double outer_diameter_mm = 1.0;
+  double inner_diameter_mm = 0.0;
+  Basis material = Basis::kSteel;
+  double density_g_per_cm3 = 7.9;
+};
+
+/// All kinds of the file. Errors name file, line and key: an unknown or missing key, a number out of range, a bore
+/// wider than the tool.
+Result<std::vector<ToolKind>> load_tool_kinds(const std::filesystem::path& file);
+/// Unknown name: exit status 2, the message lists the names.
+Result<ToolKind> load_tool_kind(const std::filesystem::path& file, std::string_view name);
+
+/// A tool of that kind along a curve through points of P: a Catmull–Rom spline in pieces of at most 2 mm. One point: a
+/// bead, as long as it is thick, along z.
+ToolShape tool_along(const ToolKind& kind, std::span<const Vec3> points_P);
+
+/// A wire that leaves a needle outside of any duct goes straight on for so long and buckles. [assumed]
+inline constexpr double kWireInTissue_mm = 5.0;
+
+/// Way of a guide wire beyond a needle's tip, points of P from the tip on: in a duct along the tree's middle lines,
+/// first to the side to which the needle points, at each branch the straightest way on, never through a closed place.
+/// Its length is `length_mm`, or less where the duct ends. Outside of the ducts at most kWireInTissue_mm straight on.
+/// At least one point; `axis_P` is a unit vector.
+std::vector<Vec3> guide_wire_way(const DuctTree& tree, const Vec3& tip_P, const Vec3& axis_P, double length_mm);
+
+/// Adds the mass of iodine (g/cm²) in ducts and vessels along each ray, averaged over the pixel. Each piece has the
+/// mass of its truncated cone; its ends fade into the next piece. Negative concentrations and non-finite pieces are
+/// ignored. `rays` are in the frame of the pieces; an empty image is made. All cores.
+void add_iodine(const std::vector<IodinePiece>& pieces, const XrayRays& rays, std::vector<float>& iodine_g_per_cm2);
+
+/// Pieces at rest, in frame A, as they are now: their ends move with the tissue, their radii and concentrations change
+/// with its stretch so that each keeps its mass.
+std::vector<IodinePiece> moved_pieces(std::vector<IodinePiece> pieces, const motion::PatientMotion& motion);
 
 }  // namespace trocar::xray

@@ -3,8 +3,12 @@
 #include <cstddef>
 #include <string>
 
-#include "attempt/guide/gun_shot.h"
+#include "anatomy/patient.h"
+#include "attempt/guide/needle_view.h"
 #include "cases/prepare_case.h"
+#include "geometry/pose.h"
+#include "metrics/metric.h"
+#include "tasks/phases/phase.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
@@ -29,5 +33,16 @@ inline constexpr double kGuideAhead_mm = 12.0;  ///< Distance ahead of the tip t
 inline constexpr double kGuideBeside_mm = 2.0;  ///< Offset from the path; smaller offsets give no advice. [assumed]
 inline constexpr double kGuideTilt_deg = 2.0;   ///< [assumed]
 inline constexpr double kGuideDepth_mm = 1.5;   ///< Tolerance of the depth at the target. [assumed]
+
+/// Advice to the trainee about a transducer whose image has to show a target; one sentence. Priority: contact with the
+/// skin, place on the skin, distance of the image plane from the target, edges of the image, what hides the target.
+/// `X_PT` and target in P, `contact_n`: force on the skin.
+std::string guide_transducer(const anatomy::VirtualPatient& patient, const Vec3& target_P, const Pose& X_PT,
+                             double contact_n, const metrics::ImagePlane& plane);
+/// True for a step that the transducer does: it has to touch the skin or to show the target.
+bool is_step_of_transducer(const tasks::Phase& phase);
+
+inline constexpr double kGuideSteep_deg = 40.0;      ///< Target farther from the beam: the transducer moves. [assumed]
+inline constexpr double kGuideBesidePlane_mm = 2.0;  ///< A target nearer to the plane is shown. [assumed]
 
 }  // namespace trocar::attempt

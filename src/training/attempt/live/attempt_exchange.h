@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "attempt/live/attempt_view.h"
-#include "attempt/record/run_result.h"
+#include "attempt/record/score_session.h"
 #include "core/clock.h"
 #include "core/result.h"
 #include "geometry/pose.h"
 #include "link/messages.h"
 #include "tasks/action.h"
 #include "tasks/operator.h"
-#include "tasks/xray_use.h"
 
 namespace trocar::attempt {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "attempt/record/recording_space.h"
+#include "attempt/record/journal.h"
 #include "attempt/record/session_case.h"
 #include "cases/scene_request.h"
-#include "telemetry/tick_pose.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 namespace {

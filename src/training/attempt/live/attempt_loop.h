@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "attempt/live/attempt_exchange.h"
-#include "attempt/live/detail/force_trace.h"
+#include "attempt/live/attempt_view.h"
 #include "attempt/live/live_operator.h"
-#include "attempt/live/needle_steering.h"
 #include "attempt/servers/haptic_servers.h"
 #include "attempt/tools/transducer_motion.h"
 #include "cases/prepare_case.h"

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "attempt/guide/gun_shot.h"
-#include "attempt/live/attempt_event.h"
+#include "attempt/guide/needle_view.h"
 #include "attempt/live/attempt_loop.h"
+#include "attempt/live/attempt_view.h"
 #include "attempt/record/session_case.h"
-#include "telemetry/tick_pose.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 namespace {

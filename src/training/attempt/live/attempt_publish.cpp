@@ -3,14 +3,12 @@
 
 #include <limits>
 
-#include "attempt/guide/gun_shot.h"
 #include "attempt/guide/needle_view.h"
 #include "attempt/guide/puncture_guide.h"
-#include "attempt/guide/transducer_guide.h"
 #include "attempt/live/attempt_loop.h"
-#include "core/ascii.h"
+#include "core/text.h"
 #include "haptics/scene_options.h"
-#include "telemetry/tick_pose.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 

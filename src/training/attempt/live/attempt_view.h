@@ -5,10 +5,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/pose.h"
+#include "metrics/harm_watch.h"
 #include "motion/patient_motion.h"
+#include "scoring/pain.h"
+#include "storage/session_file.h"
 #include "tasks/harm.h"
 #include "telemetry/tick_sample.h"
 
@@ -134,6 +138,67 @@ struct AttemptEvent {
   std::string name;                       ///< Name of the layer or label.
   std::string text;                       ///< "through the liver capsule at 1.9 N"
   tasks::Harm harm = tasks::Harm::kNone;  ///< What it did to the patient.
+};
+
+/// Display text of a tick's event: punctures, entered tissue, a needle resumed inside. Empty for other events.
+std::optional<AttemptEvent> describe_event(const storage::SessionInfo& info, const telemetry::TickSample& sample,
+                                           const telemetry::TickEvent& event);
+
+/// The event of an action: "the stylet was drawn: bile drips from the hub". `patient`: tells why an injection of
+/// anaesthetic numbs nothing; may be null.
+AttemptEvent describe_action(const tasks::SubstanceTable& substances, const tasks::Action& action,
+                             const anatomy::VirtualPatient* patient = nullptr);
+/// "contrast agent: 1.5 ml (3.0 ml in all)"
+AttemptEvent describe_injection(const tasks::ContrastInjection& injection, double depth_mm);
+/// All actions and injections of an attempt by time, for its story.
+std::vector<AttemptEvent> describe_actions(const tasks::SubstanceTable& substances, const storage::Session& session,
+                                           const anatomy::VirtualPatient* patient);
+/// The event "pain": "the patient feels pain: spinous process".
+AttemptEvent describe_pain(const scoring::PainEvent& pain);
+/// The event "harm": "critical harm: the needle went 2 mm into the heart", "grazed: …" at the moment `now`.
+AttemptEvent describe_harm(const metrics::HarmEvent& harm, const telemetry::TickSample& now);
+
+/// Thins ticks to the resolution of a plot: keeps the lowest and the highest force of each time interval (kStretch_s),
+/// in their order. All peaks are kept, and a second has 150 points at most.
+class ForceTrace {
+ public:
+  static constexpr double kStretch_s = 0.02;
+
+  void add(const ForcePoint& point) {
+    if (!has_any_) {
+      begin(point);
+      return;
+    }
+    if (point.force_n < low_.force_n) low_ = point;
+    if (point.force_n > high_.force_n) high_ = point;
+    last_ = point;
+    if (point.time_s - from_s_ >= kStretch_s) flush();
+  }
+  /// Returns the points of the finished intervals; the current interval stays.
+  std::vector<ForcePoint> take() { return std::exchange(points_, {}); }
+  /// Ends the current interval.
+  void flush() {
+    if (!has_any_) return;
+    const bool is_low_first = low_.time_s <= high_.time_s;
+    const ForcePoint& first = is_low_first ? low_ : high_;
+    const ForcePoint& second = is_low_first ? high_ : low_;
+    points_.push_back(first);
+    if (second.time_s > first.time_s) points_.push_back(second);
+    if (last_.time_s > points_.back().time_s) points_.push_back(last_);
+    has_any_ = false;
+  }
+
+ private:
+  void begin(const ForcePoint& point) {
+    low_ = high_ = last_ = point;
+    from_s_ = point.time_s;
+    has_any_ = true;
+  }
+
+  std::vector<ForcePoint> points_;
+  ForcePoint low_, high_, last_;
+  double from_s_ = 0.0;
+  bool has_any_ = false;
 };
 
 }  // namespace trocar::attempt

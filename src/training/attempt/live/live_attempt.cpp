@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/start_thread.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 #include "tasks/operator.h"
 
 namespace trocar::attempt {

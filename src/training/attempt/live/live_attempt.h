@@ -11,7 +11,7 @@
 #include "attempt/live/attempt_loop.h"
 #include "attempt/servers/haptic_servers.h"
 #include "cases/open_case.h"
-#include "core/files/disk_space.h"
+#include "core/files/file_system.h"
 
 namespace trocar::attempt {
 

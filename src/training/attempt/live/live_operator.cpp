@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "haptics/closed_loop/virtual_stylus.h"
-#include "tasks/hand.h"
-#include "telemetry/tick_pose.h"
+#include "haptics/coupling/virtual_stylus.h"
+#include "tasks/operator.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "anatomy/tissue/tissue_settings.h"
 #include "attempt/record/attempt_record.h"
-#include "core/parse_number.h"
+#include "core/text.h"
 #include "haptics/haptic_scene.h"
-#include "tasks/bevel.h"
+#include "tasks/fit_to_patient.h"
 
 namespace trocar::attempt {
 namespace {

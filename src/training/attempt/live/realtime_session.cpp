@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "attempt/live/attempt_loop.h"
-#include "attempt/servers/remote_server.h"
-#include "attempt/tools/resting_transducer.h"
+#include "attempt/servers/local_server.h"
+#include "attempt/tools/transducer_motion.h"
 #include "core/interruption.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 #include "link/endpoint.h"
 
 namespace trocar::attempt {

@@ -9,17 +9,17 @@
 
 #include "attempt/live/performer.h"
 #include "attempt/record/attempt_record.h"
-#include "cases/needle_geometry.h"
-#include "core/files/data_dir.h"
+#include "cases/scene_request.h"
+#include "core/files/folders.h"
 #include "core/files/unfinished_output.h"
 #include "core/interruption.h"
 #include "core/log.h"
-#include "haptics/closed_loop/virtual_device.h"
 #include "haptics/coupling/device_preset.h"
+#include "haptics/coupling/virtual_stylus.h"
 #include "haptics/scene_options.h"
 #include "haptics/tick.h"
-#include "tasks/hand.h"
-#include "telemetry/tick_pose.h"
+#include "tasks/operator.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "attempt/record/run_result.h"
+#include "attempt/record/score_session.h"
 #include "attempt/record/session_case.h"
 #include "cases/prepare_case.h"
 #include "core/progress.h"

@@ -12,10 +12,10 @@
 #include "attempt/record/score_session.h"
 #include "core/version.h"
 #include "haptics/force_version.h"
-#include "io/patient/patient_source.h"
+#include "io/patient/patient_folder.h"
 #include "signing/token.h"
-#include "telemetry/tick_pose.h"
-#include "xray/tools/guide_wire.h"
+#include "telemetry/tick_sample.h"
+#include "xray/tools/tool_shape.h"
 
 namespace trocar::attempt {
 namespace {

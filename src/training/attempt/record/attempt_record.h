@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "attempt/record/known_scenes.h"
-#include "attempt/record/run_result.h"
+#include "attempt/record/score_session.h"
 #include "cases/prepare_case.h"
 #include "metrics/metric.h"
 #include "tasks/operator.h"

@@ -6,11 +6,11 @@
 #include <algorithm>
 
 #include "anatomy/structure_words.h"
-#include "attempt/guide/needle_shaft.h"
-#include "attempt/live/attempt_event.h"
+#include "attempt/guide/needle_view.h"
+#include "attempt/live/attempt_view.h"
 #include "attempt/record/score_session.h"
 #include "attempt/record/session_case.h"
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 
 namespace trocar::attempt {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "attempt/guide/gun_shot.h"
+#include "attempt/guide/needle_view.h"
 #include "attempt/record/session_motion.h"
 #include "attempt/record/xray_replay.h"
 #include "cases/open_case.h"

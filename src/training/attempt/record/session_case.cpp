@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <string_view>
 
-#include "core/check.h"
-#include "core/files/data_dir.h"
+#include "cases/scene_request.h"
+#include "core/files/folders.h"
+#include "core/result.h"
+#include "haptics/force_version.h"
 #include "haptics/scene_options.h"
 #include "tasks/assess_path.h"
 #include "tasks/fit_to_patient.h"
+#include "tasks/needle.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 namespace {
@@ -113,6 +117,28 @@ link::SetParameters as_command(const storage::SessionParameters& parameters) {
   if (has("motion.")) command.motion = options.motion;
   command.tissues_toml = parameters.tissue_table_toml;
   return command;
+}
+
+std::string other_forces_note(const storage::SessionInfo& info) {
+  if (info.force_version == haptics::kForceVersion) return {};
+  return fmt::format(
+      "recorded with version {} of the forces, this program has version {}: forces computed anew differ from the "
+      "recorded ones",
+      info.force_version, haptics::kForceVersion);
+}
+
+Result<devices::RecordedMotion> stylus_motion(const storage::Session& session) {
+  TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
+  if (session.samples.empty()) return fail("the session has no ticks", "", "give a recorded session");
+  TROCAR_TRY(const tasks::Needle needle, tasks::load_needle(data / "needles.toml", session.info.needle));
+  const Pose X_WP = cases::room_in_patient(session.info.plan_P.line_P, needle.length_mm).inverse();
+  const Pose X_NS = Pose::translation({0.0, 0.0, -needle.length_mm});
+  devices::RecordedMotion motion;
+  motion.rate_hz = session.info.rate_hz;
+  motion.poses.reserve(session.samples.size());
+  for (const telemetry::TickSample& sample : session.samples)
+    motion.poses.push_back(X_WP * telemetry::device_pose(sample) * X_NS);
+  return motion;
 }
 
 }  // namespace trocar::attempt

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "cases/prepare_case.h"
+#include "core/result.h"
+#include "devices/simulated/replay_device.h"
 #include "link/messages.h"
 #include "storage/session_file.h"
 
@@ -41,5 +43,13 @@ Status check_patient(const storage::Session& session, const anatomy::VirtualPati
 
 /// SetParameters message that gives a loaded scene these parameters.
 link::SetParameters as_command(const storage::SessionParameters& parameters);
+
+/// "recorded with version 1 of the forces, …", one line, if a session was made with another version of the forces than
+/// this program's (haptics/force_version.h): forces that are computed anew from it differ. Empty: the same version.
+std::string other_forces_note(const storage::SessionInfo& info);
+
+/// Motion of the stylus that led the needle of a session, for a replay device. Frame: the room in which the session's
+/// own plan places the patient. Errors: no ticks, an unknown needle.
+Result<devices::RecordedMotion> stylus_motion(const storage::Session& session);
 
 }  // namespace trocar::attempt

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "motion/motion_clock.h"
+#include "motion/patient_motion.h"
 #include "storage/session_file.h"
 
 namespace trocar::attempt {

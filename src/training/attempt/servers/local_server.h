@@ -5,9 +5,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "attempt/servers/server_host.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "link/client/server_process.h"
 
 namespace trocar::attempt {
@@ -48,6 +49,33 @@ class LocalServer final : public ServerHost {
   std::string endpoint_;
   std::unique_ptr<TemporaryFolder> folder_;
   std::unique_ptr<link::ServerProcess> process_;
+};
+
+/// A connection through link/client/haptic_client.h. Errors: see HapticClient::connect.
+Result<std::unique_ptr<ServerConnection>> connect_by_link(const link::ClientOptions& options);
+
+/// A haptic server that was already running: it is not supervised as a process.
+class RemoteServer final : public ServerHost {
+ public:
+  RemoteServer(std::string endpoint, std::optional<link::ClientSecurity> security)
+      : endpoint_(std::move(endpoint)), security_(std::move(security)) {}
+
+  const std::string& tool() const noexcept override { return unknown_; }
+  const std::string& device() const noexcept override { return unknown_; }
+  const std::string& endpoint() const noexcept override { return endpoint_; }
+  int pid() const override { return 0; }
+  Status check() override { return {}; }
+  bool is_held_up() override { return false; }
+  Status restart() override { return fail("this program did not start the server", endpoint_, "start it again"); }
+  Result<std::unique_ptr<ServerConnection>> connect(link::ClientOptions options) override {
+    options.endpoint = endpoint_;
+    options.security = security_;
+    return connect_by_link(options);
+  }
+
+ private:
+  std::string endpoint_, unknown_;
+  std::optional<link::ClientSecurity> security_;
 };
 
 }  // namespace trocar::attempt

@@ -5,7 +5,7 @@
 
 #include "attempt/servers/detail/sentence.h"
 #include "attempt/servers/server_supervisor.h"
-#include "telemetry/gate_state.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "attempt/servers/detail/sentence.h"
-#include "telemetry/gate_state.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 namespace {

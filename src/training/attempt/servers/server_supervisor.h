@@ -12,12 +12,10 @@
 
 #include "attempt/live/attempt_view.h"
 #include "attempt/record/known_scenes.h"
-#include "attempt/record/run_result.h"
-#include "attempt/servers/device_control.h"
-#include "attempt/servers/parameter_memory.h"
+#include "attempt/record/score_session.h"
 #include "attempt/servers/server_host.h"
 #include "core/clock.h"
-#include "telemetry/tick_pose.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 

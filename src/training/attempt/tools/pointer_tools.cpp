@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attempt/tools/led_pose.h"
-#include "geometry/clamp_norm.h"
+#include "attempt/tools/transducer_motion.h"
+#include "geometry/vec.h"
 
 namespace trocar::attempt {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "anatomy/skin_now.h"
 #include "geometry/pose.h"
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 
 namespace trocar::attempt {
 

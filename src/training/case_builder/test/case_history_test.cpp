@@ -1,12 +1,10 @@
-#include "case_builder/case_history.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <set>
 
+#include "case_builder/case_draft.h"
 #include "case_builder/case_edits.h"
-#include "case_builder/landmark_names.h"
 #include "case_builder/test/made_draft.h"
 #include "core/random.h"
 

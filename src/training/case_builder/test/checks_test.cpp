@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "case_builder/case_draft.h"
 #include "case_builder/case_edits.h"
-#include "case_builder/draft_patient.h"
-#include "case_builder/force_preview.h"
 #include "case_builder/test/made_draft.h"
 
 namespace trocar::case_builder {

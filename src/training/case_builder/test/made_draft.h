@@ -2,7 +2,7 @@
 
 #include "anatomy/testing/shipped_tissues.h"
 #include "case_builder/case_draft.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "tasks/needle.h"
 #include "tasks/testing/box_patient.h"
 #include "tasks/testing/shipped_task.h"

@@ -1,16 +1,14 @@
-#include "case_builder/save_case.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "case_builder/case_draft.h"
 #include "case_builder/case_edits.h"
-#include "case_builder/case_history.h"
-#include "case_builder/import_case.h"
+#include "case_builder/case_files.h"
 #include "case_builder/test/made_draft.h"
 #include "cases/prepare_case.h"
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "core/testing/test_data.h"
 #include "io/image/image_file.h"
 #include "io/patient/patient_folder.h"

@@ -6,8 +6,7 @@
 #include <thread>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/testing/no_threads.h"
 #include "io/patient/patient_cache.h"
 #include "io/patient/patient_folder.h"

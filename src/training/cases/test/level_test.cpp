@@ -4,9 +4,8 @@
 #include "anatomy/phantom/cases.h"
 #include "anatomy/phantom/phantom.h"
 #include "cases/prepare_case.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 
 namespace trocar::cases {
 namespace {

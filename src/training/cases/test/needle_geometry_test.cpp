@@ -1,10 +1,9 @@
-#include "cases/needle_geometry.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "core/files/data_dir.h"
+#include "cases/scene_request.h"
+#include "core/files/folders.h"
 
 namespace trocar::cases {
 namespace {

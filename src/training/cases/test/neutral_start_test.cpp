@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "volume/sampling.h"
 
 namespace trocar::cases {

@@ -7,10 +7,8 @@
 #include <set>
 #include <thread>
 
-#include "core/cancellation.h"
-#include "core/files/list_folder.h"
-#include "core/files/temporary_folder.h"
-#include "io/patient/open_patient.h"
+#include "core/files/folders.h"
+#include "core/progress.h"
 #include "io/patient/patient_cache.h"
 #include "ultrasound/probe/probe_contact.h"
 #include "ultrasound/probe/scan_geometry.h"

@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "cases/prepare_case.h"
-#include "io/patient/open_patient.h"
 #include "io/patient/patient_cache.h"
 
 namespace trocar::testing {

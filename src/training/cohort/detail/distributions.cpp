@@ -5,8 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "cohort/detail/bisect.h"
-
 namespace trocar::cohort {
 namespace {
 

@@ -1,11 +1,11 @@
-#include "cohort/pass_mark.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include "cohort/separation.h"
 
 namespace trocar::cohort {
 namespace {

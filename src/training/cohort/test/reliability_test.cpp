@@ -1,10 +1,9 @@
-#include "cohort/reliability.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "cohort/validity.h"
 #include "core/random.h"
 
 namespace trocar::cohort {

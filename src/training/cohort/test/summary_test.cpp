@@ -1,10 +1,10 @@
-#include "cohort/summary.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "cohort/learning_curve.h"
 
 namespace trocar::cohort {
 namespace {

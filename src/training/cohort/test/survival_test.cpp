@@ -1,9 +1,8 @@
-#include "cohort/survival.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "cohort/learning_curve.h"
 #include "core/random.h"
 
 namespace trocar::cohort {

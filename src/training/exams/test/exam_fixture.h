@@ -5,9 +5,8 @@
 #include <fstream>
 
 #include "config/json.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "core/version.h"
 #include "exams/exam_result.h"
 #include "haptics/force_version.h"

@@ -1,5 +1,4 @@
-#include "exams/seen_bodies.h"
-
+#include "exams/exam_body.h"
 #include "exams/test/exam_fixture.h"
 
 namespace trocar::exams {

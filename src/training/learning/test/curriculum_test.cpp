@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/testing/data_folder.h"
 
 namespace trocar::learning {

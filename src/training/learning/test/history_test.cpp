@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 
 namespace trocar::learning {
 namespace {

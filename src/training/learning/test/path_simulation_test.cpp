@@ -1,7 +1,7 @@
 // Made-up trainees follow every recommendation of the real curriculum: no exercise locks the path.
 #include <gtest/gtest.h>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "learning/progress.h"
 #include "learning/test/simulated_trainee.h"
 

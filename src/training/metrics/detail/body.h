@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "anatomy/patient.h"
-#include "geometry/segment.h"
-#include "metrics/moment.h"
+#include "geometry/shapes.h"
+#include "metrics/metric.h"
 #include "volume/sampling.h"
 
 namespace trocar::metrics::detail {

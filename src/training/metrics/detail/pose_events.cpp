@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/parse_number.h"
-#include "metrics/detail/csv_fields.h"
+#include "core/text.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::metrics::detail {

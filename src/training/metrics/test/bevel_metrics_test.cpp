@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "metrics/testing/recording.h"
-#include "tasks/bevel.h"
+#include "tasks/fit_to_patient.h"
 #include "tasks/testing/attempt_patient.h"
 
 namespace trocar::metrics {

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "metrics/detail/spectrum.h"
+#include "metrics/detail/uniform_sampler.h"
 #include "metrics/testing/recording.h"
 
 namespace trocar::metrics {

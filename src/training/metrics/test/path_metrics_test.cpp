@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "metrics/detail/curve.h"
+#include "metrics/curve_distances.h"
 #include "metrics/testing/recording.h"
 
 namespace trocar::metrics {

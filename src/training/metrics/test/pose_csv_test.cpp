@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "metrics/testing/recording.h"
 
 namespace trocar::metrics {

@@ -30,4 +30,9 @@ std::string base64(std::string_view bytes);
 /// Approximate width of a text (px) at a font size, sufficient to place labels.
 double text_width(std::string_view text, double font_px);
 
+/// The style sheet of the report: screen and A4 print, curves differ in dashes as well as in colour.
+std::string style_sheet();
+/// The part of the style sheet that a plot needs.
+std::string plot_style();
+
 }  // namespace trocar::report::detail

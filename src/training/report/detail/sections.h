@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "report/report_story.h"
+#include "report/session_analysis.h"
 #include "storage/session_file.h"
 
 namespace trocar::report::detail {

@@ -1,7 +1,6 @@
-#include "report/report_story.h"
-
 #include <gtest/gtest.h>
 
+#include "report/session_analysis.h"
 #include "report/test/example_attempt.h"
 
 namespace trocar::report {

@@ -1,7 +1,6 @@
-#include "report/text_report.h"
-
 #include <gtest/gtest.h>
 
+#include "report/html_report.h"
 #include "report/test/example_attempt.h"
 
 namespace trocar::report {

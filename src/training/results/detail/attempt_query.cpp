@@ -2,8 +2,6 @@
 
 #include <cstdlib>
 
-#include "results/detail/rows.h"
-
 namespace trocar::results::detail {
 namespace {
 

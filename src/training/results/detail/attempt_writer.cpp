@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/utf8.h"
-#include "database/bytes.h"
+#include "core/text.h"
+#include "database/statements.h"
 #include "learning/history.h"
+#include "results/detail/attempt_query.h"
 #include "results/detail/csv_columns.h"
 #include "results/detail/details_json.h"
-#include "results/detail/people_table.h"
-#include "results/detail/rows.h"
 
 namespace trocar::results::detail {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "config/nearest_word.h"
+#include "config/toml.h"
 #include "metrics/metric.h"
 #include "results/attempts_csv.h"
 

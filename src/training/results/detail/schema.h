@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "database/migrations.h"
+#include "database/statements.h"
 
 namespace trocar::results::detail {
 

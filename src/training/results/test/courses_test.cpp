@@ -1,5 +1,4 @@
-#include "results/courses.h"
-
+#include "results/notes.h"
 #include "results_lab.h"
 
 namespace trocar::results {

@@ -1,5 +1,4 @@
-#include "results/curves.h"
-
+#include "results/proficiency.h"
 #include "results/test/small_study.h"
 
 namespace trocar::results {

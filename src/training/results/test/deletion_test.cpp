@@ -1,12 +1,11 @@
 // What is deleted is in no file of the database any more, while the programs that use it go on.
-#include "results/deletion.h"
-
 #include <fmt/format.h>
 
 #include <fstream>
 
 #include "results/accounts.h"
 #include "results/questionnaires.h"
+#include "results/repository.h"
 #include "results_lab.h"
 
 namespace trocar::results {

@@ -1,6 +1,6 @@
 #include <map>
 
-#include "database/migrations.h"
+#include "database/statements.h"
 #include "results/detail/schema.h"
 #include "results/notes.h"
 #include "results_lab.h"

@@ -2,10 +2,10 @@
 
 #include <fstream>
 
+#include "results/attempt.h"
 #include "results/csv_text.h"
-#include "results/deletion.h"
 #include "results/people.h"
-#include "results/reasons.h"
+#include "results/repository.h"
 #include "results_lab.h"
 
 namespace trocar::results {

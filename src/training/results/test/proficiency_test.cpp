@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "results/teaching.h"
+#include "results/notes.h"
 #include "results/test/small_study.h"
 
 namespace trocar::results {

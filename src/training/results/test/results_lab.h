@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "database/testing/postgres_server.h"
 #include "results/attempts.h"
 

@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "database/testing/other_file_system.h"
 #include "results_lab.h"
 #include "storage/session_file.h"

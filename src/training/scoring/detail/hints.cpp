@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "anatomy/structure_words.h"
-#include "core/ascii.h"
-#include "scoring/detail/advice.h"
+#include "core/text.h"
 
 namespace trocar::scoring {
 namespace {

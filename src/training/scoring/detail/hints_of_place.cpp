@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "anatomy/direction_words.h"
 #include "anatomy/structure_words.h"
-#include "scoring/detail/advice.h"
-#include "telemetry/tick_pose.h"
+#include "scoring/detail/hints.h"
+#include "telemetry/tick_sample.h"
 #include "volume/sampling.h"
 
 namespace trocar::scoring {

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "anatomy/direction_words.h"
 #include "anatomy/structure_words.h"
-#include "scoring/detail/advice.h"
+#include "scoring/detail/hints.h"
 
 namespace trocar::scoring {
 namespace {

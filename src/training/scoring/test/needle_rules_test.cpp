@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "scoring/test/outcome_support.h"
-#include "tasks/bevel.h"
-#include "telemetry/tick_pose.h"
+#include "tasks/fit_to_patient.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::scoring {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "scoring/test/outcome_support.h"
-#include "tasks/bevel.h"
+#include "tasks/fit_to_patient.h"
 #include "tasks/testing/attempt_patient.h"
 
 namespace trocar::scoring {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "storage/detail/columns.h"
-#include "storage/detail/guarded_database.h"
+#include "storage/detail/database.h"
 
 namespace trocar::storage::detail {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/hash.h"
+#include "core/random.h"
 #include "storage/detail/database.h"
 #include "telemetry/tick_sample.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <sstream>
 
-#include "storage/detail/guarded_database.h"
+#include "storage/detail/database.h"
 
 namespace trocar::storage::detail {
 namespace {

@@ -4,14 +4,11 @@
 
 #include <algorithm>
 
-#include "storage/detail/action_table.h"
 #include "storage/detail/checksums.h"
 #include "storage/detail/info_table.h"
 #include "storage/detail/parameters_table.h"
-#include "storage/detail/shape_table.h"
-#include "storage/detail/tick_reader.h"
-#include "storage/detail/transducer_table.h"
-#include "storage/detail/xray_table.h"
+#include "storage/detail/tick_buffer.h"
+#include "storage/detail/timed_table.h"
 
 namespace trocar::storage::detail {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "storage/detail/guarded_database.h"
+#include "storage/detail/database.h"
 #include "storage/session_file.h"
 
 namespace trocar::storage::detail {

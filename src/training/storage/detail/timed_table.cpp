@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "storage/detail/database.h"
+
 namespace trocar::storage::detail {
 namespace {
 
@@ -62,6 +64,99 @@ std::vector<std::vector<double>> read_rows(soci::session& database, const TimedT
     for (std::vector<double>& column : columns) column.resize(kRowsAFetch);
   }
   return rows;
+}
+
+namespace {
+
+/// A number of a file as an enumerator from 0 to `last`.
+template <class Enum>
+Enum read_enum(double number, Enum last) {
+  if (!(number >= 0.0 && number <= static_cast<double>(last)) || number != std::floor(number))
+    throw soci::soci_error("an action of the trainee is invalid");
+  return static_cast<Enum>(number);
+}
+
+}  // namespace
+
+const TimedTable& action_table() {
+  static const TimedTable kTable{"actions",
+                                 {"time_s", "kind", "amount", "substance", "share", "x_mm", "y_mm", "z_mm", "depth_mm"},
+                                 kMaxTransducerRows};
+  return kTable;
+}
+
+void add(TimedBuffer& buffer, const tasks::Action& action) {
+  const Vec3& p = action.tip_A;
+  buffer.add(std::array{action.time_s, static_cast<double>(action.kind), action.amount,
+                        static_cast<double>(action.result.substance), action.result.share, p.x(), p.y(), p.z(),
+                        action.depth_mm});
+}
+
+std::vector<tasks::Action> read_actions(soci::session& database) {
+  std::vector<tasks::Action> actions;
+  const auto rows = read_rows(database, action_table());
+  for (const std::vector<double>& row : rows) {
+    if (!all_finite(row)) throw soci::soci_error("an action of the trainee is invalid");
+    actions.push_back({row[0],
+                       read_enum(row[1], tasks::kLastAction),
+                       row[2],
+                       {read_enum(row[3], tasks::kLastSubstance), row[4]},
+                       Vec3(row[5], row[6], row[7]),
+                       row[8]});
+  }
+  return actions;
+}
+
+const TimedTable& transducer_table() {
+  static const TimedTable kTable{
+      "transducer", {"time_s", "x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz", "contact_n"}, kMaxTransducerRows};
+  return kTable;
+}
+
+void add(TimedBuffer& buffer, const TransducerSample& sample) {
+  const Vec3& p = sample.X_PT.p();
+  const Eigen::Quaterniond q(sample.X_PT.R());
+  buffer.add(std::array{sample.time_s, p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), sample.contact_n});
+}
+
+std::vector<TransducerSample> read_transducer(soci::session& database) {
+  std::vector<TransducerSample> samples;
+  const auto rows = read_rows(database, transducer_table());
+  samples.reserve(rows.size());
+  for (const std::vector<double>& row : rows) {
+    const Eigen::Quaterniond q(row[4], row[5], row[6], row[7]);
+    constexpr double kLeastNorm = 0.5;  // stored as a unit quaternion
+    if (!all_finite(row) || q.norm() < kLeastNorm) throw soci::soci_error("a pose of the transducer is invalid");
+    samples.push_back({row[0], Pose(q.normalized().toRotationMatrix(), Vec3(row[1], row[2], row[3])), row[8]});
+  }
+  return samples;
+}
+
+const TimedTable& xray_table() {
+  static const TimedTable kTable{"xray",
+                                 {"time_s", "lao_deg", "cranial_deg", "x_mm", "y_mm", "z_mm", "field_mm", "beam_on",
+                                  "contrast_ml", "beam_s", "air_kerma_mgy", "dose_area_gycm2"},
+                                 kMaxTransducerRows};
+  return kTable;
+}
+
+void add(TimedBuffer& buffer, const tasks::XrayUse& use) {
+  const Vec3& p = use.isocentre_P;
+  buffer.add(std::array{use.time_s, use.lao_deg, use.cranial_deg, p.x(), p.y(), p.z(), use.field_mm,
+                        use.is_beam_on ? 1.0 : 0.0, use.contrast_ml, use.beam_s, use.air_kerma_mgy,
+                        use.dose_area_gycm2});
+}
+
+std::vector<tasks::XrayUse> read_xray(soci::session& database) {
+  std::vector<tasks::XrayUse> uses;
+  const auto rows = read_rows(database, xray_table());
+  for (const std::vector<double>& row : rows) {
+    const bool is_dose = row[8] >= 0.0 && row[9] >= 0.0 && row[10] >= 0.0 && row[11] >= 0.0;
+    if (!all_finite(row) || !is_dose) throw soci::soci_error("a dose of the X-ray is invalid");
+    uses.push_back(
+        {row[0], row[1], row[2], Vec3(row[3], row[4], row[5]), row[6], row[7] > 0.5, row[8], row[9], row[10], row[11]});
+  }
+  return uses;
 }
 
 }  // namespace trocar::storage::detail

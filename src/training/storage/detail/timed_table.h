@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "storage/detail/database.h"
+#include "storage/session_file.h"
+#include "tasks/action.h"
 
 namespace trocar::storage::detail {
 
@@ -43,5 +45,23 @@ class TimedBuffer {
 std::vector<std::vector<double>> read_rows(soci::session& database, const TimedTable& table);
 
 bool all_finite(std::span<const double> row) noexcept;
+
+/// The table `actions`: time, kind, amount, what came back, place of the tip.
+const TimedTable& action_table();
+void add(TimedBuffer& buffer, const tasks::Action& action);
+/// Throws soci::soci_error, also for a kind or substance that does not exist.
+std::vector<tasks::Action> read_actions(soci::session& database);
+
+/// The table `transducer`: time, origin and rotation of X_PT, force of contact.
+const TimedTable& transducer_table();
+void add(TimedBuffer& buffer, const TransducerSample& sample);
+/// Throws soci::soci_error, also for an invalid pose.
+std::vector<TransducerSample> read_transducer(soci::session& database);
+
+/// The table `xray`: time, place of the C-arm, whether the beam is on, contrast agent and dose up to then.
+const TimedTable& xray_table();
+void add(TimedBuffer& buffer, const tasks::XrayUse& use);
+/// Throws soci::soci_error, also for a dose that is negative.
+std::vector<tasks::XrayUse> read_xray(soci::session& database);
 
 }  // namespace trocar::storage::detail

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/random.h"
 #include "storage/detail/database.h"
 #include "storage/session_file.h"

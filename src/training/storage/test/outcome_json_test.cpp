@@ -1,6 +1,6 @@
-#include "storage/detail/outcome_json.h"
-
 #include <gtest/gtest.h>
+
+#include "storage/score_json.h"
 
 namespace trocar::storage::detail {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <sstream>
 
-#include "core/files/atomic_file.h"
-#include "core/parse_number.h"
+#include "core/files/output_file.h"
+#include "core/text.h"
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"
 

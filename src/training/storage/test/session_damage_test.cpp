@@ -4,8 +4,8 @@
 #include <fstream>
 #include <map>
 
-#include "core/files/atomic_file.h"
-#include "storage/detail/guarded_database.h"
+#include "core/files/output_file.h"
+#include "storage/detail/database.h"
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"
 

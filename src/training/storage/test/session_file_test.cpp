@@ -7,7 +7,7 @@
 #include <fstream>
 #include <limits>
 
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "storage/detail/columns.h"
 #include "storage/detail/database.h"
 #include "storage/test/example_session.h"

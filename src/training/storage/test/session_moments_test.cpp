@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "metrics/measure_run.h"
 #include "metrics/pose_csv.h"
 #include "storage/test/example_session.h"

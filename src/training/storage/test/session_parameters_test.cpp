@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
 #include "storage/detail/database.h"
 #include "storage/session_file.h"
 #include "storage/test/example_session.h"

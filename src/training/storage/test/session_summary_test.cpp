@@ -1,8 +1,7 @@
-#include "storage/session_summary.h"
-
 #include <gtest/gtest.h>
 
-#include "core/files/atomic_file.h"
+#include "core/files/output_file.h"
+#include "storage/session_file.h"
 #include "storage/test/example_session.h"
 
 namespace trocar::storage {

@@ -1,5 +1,3 @@
-#include "storage/detail/wal_checkpointer.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>

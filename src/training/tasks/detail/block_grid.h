@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
+#include "anatomy/patient.h"
 #include "core/parallel.h"
+#include "tasks/task.h"
 #include "volume/grid.h"
 
 namespace trocar::tasks::detail {
@@ -87,5 +90,8 @@ volume::MaskGrid cut_mask(const volume::LabelGrid& labels, const IndexBox& box, 
   }
   return mask;
 }
+
+/// What the patient's target lacks for a task with least_target_ml, in one line; empty: nothing, or the task has none.
+std::string target_shortage(const Task& task, const anatomy::VirtualPatient& patient);
 
 }  // namespace trocar::tasks::detail

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "tasks/bevel.h"
+#include "tasks/fit_to_patient.h"
 
 namespace trocar::tasks {
 namespace {

@@ -9,9 +9,7 @@
 
 #include "core/parallel.h"
 #include "tasks/detail/block_grid.h"
-#include "tasks/detail/target_volume.h"
 #include "tasks/fit_to_patient.h"
-#include "tasks/postures.h"
 #include "volume/distance.h"
 #include "volume/sampling.h"
 

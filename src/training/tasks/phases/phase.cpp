@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "anatomy/structure_words.h"
-#include "tasks/substance.h"
+#include "tasks/action.h"
 
 namespace trocar::tasks {
 namespace {

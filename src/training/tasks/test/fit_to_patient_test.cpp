@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "tasks/allowed_needles.h"
-#include "tasks/bevel.h"
 #include "tasks/plan.h"
 #include "tasks/testing/attempt_patient.h"
 #include "tasks/testing/box_patient.h"

@@ -1,8 +1,8 @@
-#include "tasks/hand.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
+
+#include "tasks/operator.h"
 
 namespace trocar::tasks {
 namespace {

@@ -4,9 +4,8 @@
 
 #include <map>
 
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "core/testing/changed_file.h"
 
 namespace trocar::tasks {

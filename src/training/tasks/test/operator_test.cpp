@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/testing/allocation_guard.inc.h"
-#include "geometry/quaternion.h"
+#include "geometry/pose.h"
 #include "tasks/testing/layered_body.h"
 
 namespace trocar::tasks {

@@ -1,8 +1,8 @@
 // A task that was made for one patient: its file, its target, its entry zone, its expert path.
 #include <gtest/gtest.h>
 
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "tasks/assess_path.h"
 #include "tasks/plan.h"
 #include "tasks/testing/attempt_patient.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "tasks/testing/box_patient.h"
 #include "tasks/testing/shipped_task.h"
 #include "volume/sampling.h"

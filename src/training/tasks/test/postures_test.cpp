@@ -1,12 +1,10 @@
-#include "tasks/postures.h"
-
 #include <gtest/gtest.h>
 
-#include "anatomy/posture.h"
-#include "core/files/data_dir.h"
+#include "anatomy/patient.h"
+#include "core/files/folders.h"
 #include "tasks/assess_path.h"
+#include "tasks/fit_to_patient.h"
 #include "tasks/plan.h"
-#include "tasks/readiness.h"
 #include "tasks/testing/box_patient.h"
 #include "tasks/testing/shipped_task.h"
 

@@ -1,8 +1,7 @@
-#include "tasks/readiness.h"
-
 #include <gtest/gtest.h>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
+#include "tasks/assess_path.h"
 #include "tasks/plan.h"
 #include "tasks/testing/box_patient.h"
 

@@ -1,12 +1,10 @@
-#include "tasks/substance.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "tasks/action.h"
 #include "tasks/testing/attempt_patient.h"
 
 namespace trocar::tasks {

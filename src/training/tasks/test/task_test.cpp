@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "anatomy/known_structures.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "tasks/needle.h"
 #include "tasks/testing/box_patient.h"
 #include "tasks/testing/shipped_task.h"

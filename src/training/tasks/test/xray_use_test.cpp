@@ -1,6 +1,6 @@
-#include "tasks/xray_use.h"
-
 #include <gtest/gtest.h>
+
+#include "tasks/action.h"
 
 namespace trocar::tasks {
 namespace {

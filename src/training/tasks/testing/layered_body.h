@@ -3,7 +3,6 @@
 #include <limits>
 #include <vector>
 
-#include "tasks/hand.h"
 #include "tasks/operator.h"
 
 namespace trocar::testing {

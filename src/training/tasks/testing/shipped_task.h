@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "tasks/needle.h"
 #include "tasks/task.h"
 

@@ -1,11 +1,10 @@
-#include "devices/pointer/polled_pointer.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
 #include "core/testing/no_threads.h"
+#include "devices/pointer/pointer_device.h"
 #include "devices/test/bad_numbers.h"
 #include "devices/test/bounded_wait.h"
 

@@ -10,7 +10,7 @@
 #include <functional>
 #include <string>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::devices {
 namespace {

@@ -1,9 +1,9 @@
-#include "devices/simulated/fault_schedule.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+
+#include "devices/simulated/faulty_device.h"
 
 namespace trocar::devices {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/testing/allocation_guard.h"
 #include "devices/device_spec.h"
 #include "devices/simulated/replay_device.h"

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "devices/device_spec.h"
 #include "haptics/closed_loop/rotation.h"
 

@@ -1,9 +1,8 @@
-#include "devices/simulated/replay_file.h"
-
 #include <gtest/gtest.h>
 
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
+#include "devices/simulated/replay_device.h"
 #include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {

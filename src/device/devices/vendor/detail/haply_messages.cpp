@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "devices/detail/units.h"
+#include "devices/detail/factories.h"
 
 namespace trocar::devices {
 namespace {

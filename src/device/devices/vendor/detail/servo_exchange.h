@@ -6,8 +6,8 @@
 
 #include "devices/haptic_device.h"
 #include "devices/simulated/detail/hand_motion.h"  // is_valid
-#include "geometry/clamp_norm.h"
-#include "realtime/triple_buffer.h"
+#include "geometry/vec.h"
+#include "realtime/lock_free.h"
 
 namespace trocar::devices {
 
@@ -95,6 +95,25 @@ class ServoExchange {
   realtime::TripleBuffer<Wrench> wrenches_;
   std::atomic<bool> is_closing_{false};
   std::atomic<bool> is_lost_{false};
+};
+
+/// Work of a servo loop in one period.
+class ServoBody {
+ public:
+  virtual void serve(double now_s) noexcept = 0;
+
+ protected:
+  ~ServoBody() = default;
+};
+
+/// Clock of a servo loop. The real clock wakes at absolute times; the clock of a test wakes on request.
+class ServoPace {
+ public:
+  virtual ~ServoPace() = default;
+  /// Runs `body` once per period until `is_stopping` is set. Call it from the thread of the loop.
+  virtual void run(const std::atomic<bool>& is_stopping, ServoBody& body) noexcept = 0;
+  /// Ends a long wait. Call it from another thread, after that thread has set `is_stopping`.
+  virtual void wake() noexcept {}
 };
 
 }  // namespace trocar::devices

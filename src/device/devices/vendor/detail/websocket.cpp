@@ -11,7 +11,7 @@
 #include <exception>
 #include <utility>
 
-#include "core/ascii.h"
+#include "core/text.h"
 
 namespace trocar::devices {
 namespace {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/testing/source_dir.h"
 
 namespace trocar::devices {

@@ -4,17 +4,16 @@
 
 #include <cmath>
 
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/testing/allocation_guard.h"
 #include "core/testing/no_threads.h"
 #include "devices/device_spec.h"
-#include "devices/stylus_profile.h"
 #include "devices/test/bad_numbers.h"
 #include "devices/test/bounded_wait.h"
 #include "devices/testing/haply_service.h"
 #include "devices/vendor/detail/haply_messages.h"
 #include "devices/vendor/detail/websocket.h"
+#include "devices/workspace_map.h"
 
 namespace trocar::devices {
 namespace {

@@ -7,15 +7,15 @@
 #include <numbers>
 #include <thread>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/testing/allocation_guard.h"
 #include "core/testing/source_dir.h"
 #include "devices/device_spec.h"
-#include "devices/stylus_profile.h"
 #include "devices/test/standin/hd_stand_in.h"
 #include "devices/vendor/detail/hd_api.h"
 #include "devices/vendor/detail/servo_exchange.h"
 #include "devices/vendor/test/vendor_library.h"
+#include "devices/workspace_map.h"
 
 namespace trocar::devices {
 namespace {

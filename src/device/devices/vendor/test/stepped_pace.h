@@ -5,7 +5,7 @@
 #include <mutex>
 #include <thread>
 
-#include "devices/vendor/servo_pace.h"
+#include "devices/vendor/detail/servo_exchange.h"
 
 namespace trocar::testing {
 

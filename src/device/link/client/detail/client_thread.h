@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "core/result.h"
-#include "link/client/detail/client_beat.h"
 #include "link/client/detail/client_mailbox.h"
 #include "link/client/detail/client_session.h"
 #include "link/client/detail/zmq_handles.h"
 #include "link/client/haptic_client.h"
-#include "link/zmtp/detail/handshake_monitor.h"
 
 namespace trocar::link::detail {
 

@@ -1,11 +1,10 @@
-#include "link/client/detail/clock_offset.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "core/random.h"
+#include "link/client/detail/client_session.h"
 
 namespace trocar::link::detail {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "link/curve_keys.h"
+#include "link/endpoint.h"
 
 namespace trocar::link::detail {
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "core/log.h"
-#include "link/limits.h"
+#include "link/messages.h"
 #include "link/zmtp/detail/tcp_address.h"
 
 namespace trocar::link::detail {

@@ -9,14 +9,13 @@
 #include <string_view>
 #include <vector>
 
-#include "core/log_limit.h"
+#include "core/log.h"
 #include "core/result.h"
-#include "link/detail/descriptor.h"
 #include "link/detail/ipc_file.h"
 #include "link/endpoint.h"
-#include "link/limits.h"
+#include "link/messages.h"
 #include "link/zmtp/detail/curve_handshake.h"
-#include "link/zmtp/detail/token_bucket.h"
+#include "link/zmtp/detail/peer_table.h"
 #include "link/zmtp/detail/zmtp_connection.h"
 
 namespace trocar::link::detail {

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "core/parse_number.h"
+#include "core/text.h"
 #include "link/endpoint.h"
 
 namespace trocar::link::detail {

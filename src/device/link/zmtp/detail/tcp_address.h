@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "core/result.h"
-#include "link/detail/descriptor.h"
+#include "link/detail/ipc_file.h"
 
 namespace trocar::link::detail {
 

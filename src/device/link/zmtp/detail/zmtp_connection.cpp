@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "link/limits.h"
+#include "link/messages.h"
 
 namespace trocar::link::detail {
 namespace {

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "link/limits.h"
+#include "link/messages.h"
 #include "link/zmtp/detail/curve_handshake.h"
-#include "link/zmtp/detail/token_bucket.h"
+#include "link/zmtp/detail/peer_table.h"
 #include "link/zmtp/detail/zmtp_frames.h"
 
 namespace trocar::link::detail {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
-#include "link/limits.h"
+#include "link/messages.h"
 
 namespace trocar::link::detail {
 namespace {

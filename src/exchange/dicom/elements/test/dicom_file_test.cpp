@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "dicom/testing/dicom_writer.h"
 
 namespace trocar::dicom {

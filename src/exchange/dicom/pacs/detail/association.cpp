@@ -17,7 +17,7 @@
 #include <dcmtk/dcmnet/assoc.h>
 #include <dcmtk/dcmnet/dcmtrans.h>
 
-#include "dicom/pacs/detail/dcmtk_setup.h"
+#include "dicom/pacs/detail/dimse_command.h"
 
 namespace trocar::dicom::detail {
 namespace {

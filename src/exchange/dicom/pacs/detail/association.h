@@ -10,7 +10,7 @@
 
 #include "core/result.h"
 #include "dicom/pacs/detail/dimse_command.h"
-#include "dicom/pacs/detail/storage_classes.h"
+#include "dicom/pacs/detail/rewrite_object.h"
 #include "dicom/pacs/dimse_source.h"
 
 namespace trocar::dicom::detail {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dicom/elements/element_walk.h"
 #include "dicom/pacs/detail/object_files.h"
@@ -39,5 +41,25 @@ struct MetaInformation {
 
 /// Preamble and group 2 of a DICOM file (PS3.10, 7.1).
 void write_meta(const MetaInformation& meta, OutputFile& out);
+
+/// Elements of a data set, or of an item, in the order of their tags; explicit VR little endian.
+class DataElements {
+ public:
+  void text(std::uint32_t tag, std::string_view vr, std::string_view value);
+  void decimal(std::uint32_t tag, double value);
+  void decimals(std::uint32_t tag, const std::vector<double>& values);
+  void integer(std::uint32_t tag, long value);
+  void number(std::uint32_t tag, int value);
+  void tag_pointer(std::uint32_t tag, std::uint32_t target);
+  void sequence(std::uint32_t tag, const std::vector<DataElements>& items);
+  void write(ElementWriter& writer) const;
+
+ private:
+  std::string bytes() const;
+  struct Value {
+    std::string vr, value;
+  };
+  std::map<std::uint32_t, Value> elements_;
+};
 
 }  // namespace trocar::dicom::detail

@@ -8,7 +8,6 @@
 
 #include "core/result.h"
 #include "dicom/pacs/detail/character_set.h"
-#include "dicom/pacs/detail/identity_words.h"
 
 namespace trocar::dicom::detail {
 

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/ascii.h"
-#include "core/parse_number.h"
+#include "core/text.h"
 #include "dicom/elements/dicom_file.h"
 #include "dicom/pacs/detail/data_set.h"
 

@@ -6,9 +6,8 @@
 #include <fstream>
 
 #include "config/toml.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 
 namespace trocar::dicom::detail {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <thread>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "dicom/pacs/detail/guarded_stream.h"
 
 namespace trocar::dicom::detail {

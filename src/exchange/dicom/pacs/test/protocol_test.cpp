@@ -1,10 +1,10 @@
 // Parsers of what a PACS sends, and of addresses.
 #include <gtest/gtest.h>
 
+#include "dicom/pacs/detail/data_set.h"
 #include "dicom/pacs/detail/dimse_command.h"
-#include "dicom/pacs/detail/multipart_reader.h"
-#include "dicom/pacs/detail/query.h"
-#include "dicom/pacs/detail/storage_classes.h"
+#include "dicom/pacs/detail/http_client.h"
+#include "dicom/pacs/detail/rewrite_object.h"
 #include "dicom/pacs/dicomweb_source.h"
 #include "dicom/pacs/dimse_source.h"
 

@@ -1,6 +1,6 @@
-#include "dicom/pacs/detail/pseudonyms.h"
-
 #include <gtest/gtest.h>
+
+#include "dicom/pacs/detail/anonymisation.h"
 
 namespace trocar::dicom::detail {
 namespace {

@@ -7,8 +7,7 @@
 #include <iterator>
 #include <set>
 
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "dicom/elements/dicom_file.h"
 #include "dicom/pacs/testing/made_object.h"
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "core/parse_number.h"
+#include "core/text.h"
 #include "dicom/stack/slice_stack.h"
 
 namespace trocar::dicom::detail {

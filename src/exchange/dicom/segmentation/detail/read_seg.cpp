@@ -9,8 +9,6 @@
 #include <utility>
 
 #include "core/available_memory.h"
-#include "dicom/segmentation/detail/label_layers.h"
-#include "dicom/segmentation/detail/plane_gaps.h"
 #include "dicom/segmentation/detail/plane_places.h"
 #include "dicom/segmentation/detail/seg_pixels.h"
 

@@ -2,6 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "core/available_memory.h"
+#include "core/result.h"
+
 namespace trocar::dicom::detail {
 namespace {
 
@@ -73,6 +80,74 @@ Status SegPixels::read(std::size_t frame, std::vector<std::uint16_t>& pixels) co
     read_bits(bytes, 0, pixels);
   else
     read_numbers(bytes, false, pixels);
+  return {};
+}
+
+namespace {
+
+constexpr std::size_t kMostEmptyPlanes = 3;
+
+bool share_a_pixel(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b, std::uint8_t value) {
+  for (std::size_t n = 0; n < a.size(); ++n)
+    if (a[n] == value && b[n] == value) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<PlaneGaps> find_plane_gaps(const LabelLayers::Layer& layer, const SliceStack& stack) {
+  std::vector<PlaneGaps> gaps(layer.segments.size());
+  std::vector<std::optional<std::size_t>> last(layer.segments.size());
+  const auto plane_size = static_cast<std::size_t>(stack.columns * stack.rows);
+  const auto pixels_of = [&](std::size_t plane) {
+    return std::span(layer.voxels).subspan(plane * plane_size, plane_size);
+  };
+  for (std::size_t plane = 0; plane < stack.origins_P.size(); ++plane) {
+    std::vector<bool> is_here(kMostValues + 1, false);
+    for (const std::uint8_t value : pixels_of(plane)) is_here[value] = true;
+    for (std::size_t n = 0; n < gaps.size(); ++n) {
+      if (!is_here[n + 1]) continue;
+      ++gaps[n].drawn;
+      if (last[n] && plane - *last[n] > 1 && plane - *last[n] <= kMostEmptyPlanes + 1 &&
+          share_a_pixel(pixels_of(*last[n]), pixels_of(plane), static_cast<std::uint8_t>(n + 1))) {
+        ++gaps[n].count;
+        gaps[n].widest_mm = std::max(gaps[n].widest_mm, stack.along_mm(plane) - stack.along_mm(*last[n]));
+      }
+      last[n] = plane;
+    }
+  }
+  return gaps;
+}
+
+namespace {
+
+bool overlap(std::span<const std::uint8_t> mask, std::span<const std::uint8_t> voxels) {
+  for (std::size_t n = 0; n < mask.size(); ++n)
+    if (mask[n] != 0 && voxels[n] != 0) return true;
+  return false;
+}
+
+}  // namespace
+
+Result<LabelLayers::Layer*> LabelLayers::layer_for(std::size_t first, std::span<const std::uint8_t> mask) {
+  for (Layer& layer : layers_)
+    if (layer.segments.size() < kMostValues && !overlap(mask, std::span(layer.voxels).subspan(first, mask.size())))
+      return &layer;
+  const auto count = static_cast<std::uint64_t>(size_[0] * size_[1] * size_[2]);
+  TROCAR_TRY_STATUS(check_memory_for_image(count, available_memory_bytes(), where_));
+  layers_.push_back({std::vector<std::uint8_t>(count, 0), {}});
+  return &layers_.back();
+}
+
+Status LabelLayers::add(std::size_t segment, std::int64_t first_plane, std::span<const std::uint8_t> mask) {
+  if (std::all_of(mask.begin(), mask.end(), [](std::uint8_t value) { return value == 0; })) return {};
+  const auto first = static_cast<std::size_t>(first_plane * size_[0] * size_[1]);
+  TROCAR_CHECK(first + mask.size() <= static_cast<std::size_t>(size_[0] * size_[1] * size_[2]));
+  TROCAR_TRY(Layer* const layer, layer_for(first, mask));
+  layer->segments.push_back(segment);
+  const auto value = static_cast<std::uint8_t>(layer->segments.size());
+  for (std::size_t n = 0; n < mask.size(); ++n)
+    if (mask[n] != 0) layer->voxels[first + n] = value;
   return {};
 }
 

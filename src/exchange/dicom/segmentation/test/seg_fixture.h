@@ -6,7 +6,7 @@
 #include <array>
 #include <functional>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "dicom/segmentation/segmentation.h"
 #include "dicom/testing/segmentation_writer.h"
 

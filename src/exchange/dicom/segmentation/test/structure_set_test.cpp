@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "dicom/segmentation/segmentation.h"
 #include "dicom/testing/segmentation_writer.h"
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "core/files/find_program.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/file_system.h"
+#include "core/files/folders.h"
 #include "dicom/elements/dicom_file.h"
 
 namespace trocar::dicom {

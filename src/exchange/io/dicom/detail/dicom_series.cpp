@@ -9,10 +9,8 @@
 
 #include "core/available_memory.h"
 #include "core/parallel.h"
-#include "io/dicom/detail/acquisitions.h"
-#include "io/dicom/detail/find_series.h"
-#include "io/dicom/detail/padding.h"
 #include "io/dicom/detail/tidy_series.h"
+#include "io/dicom/dicom_folder.h"
 
 namespace trocar::io::detail {
 namespace fs = std::filesystem;

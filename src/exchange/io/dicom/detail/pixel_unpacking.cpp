@@ -9,11 +9,10 @@
 #include <optional>
 #include <string_view>
 
-#include "core/decimal_point.h"
-#include "io/dicom/detail/codestream.h"
+#include "core/text.h"
 #include "io/dicom/detail/jpeg_segments.h"
 #include "io/dicom/detail/lossless_jpeg.h"
-#include "io/image/detail/quiet.h"
+#include "io/image/detail/itk_image.h"
 
 namespace trocar::io::detail {
 namespace {

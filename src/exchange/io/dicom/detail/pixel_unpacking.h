@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "io/image/detail/voxel_type.h"
+#include "io/image/detail/payload.h"
 
 namespace trocar::io::detail {
 

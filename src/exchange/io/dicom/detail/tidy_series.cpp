@@ -5,7 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
 #include <map>
+#include <string>
+#include <vector>
 
 namespace trocar::io::detail {
 namespace {
@@ -166,6 +171,144 @@ Result<SeriesImages> leave_out_others(SeriesImages images, std::vector<std::stri
   leave_out_odd(images, warnings);
   TROCAR_TRY_STATUS(leave_out_copies(images, warnings));
   return images;
+}
+
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kFewSlices = 6;
+constexpr const char* kGiveOnePhase = "give the slices of one acquisition or phase alone, in a folder of their own";
+
+/// Sum of the differences of two slices, over some of their pixels.
+double difference(std::span<const std::int16_t> a, std::span<const std::int16_t> b) {
+  constexpr std::size_t kStride = 7;
+  double sum = 0.0;
+  for (std::size_t n = 0; n < a.size(); n += kStride) sum += std::abs(static_cast<int>(a[n]) - static_cast<int>(b[n]));
+  return sum;
+}
+
+}  // namespace
+
+Status check_acquisitions(const std::vector<DicomSlice>& slices, const fs::path& folder) {
+  std::map<std::string, std::size_t> count_of;
+  std::size_t changes = 0;
+  for (std::size_t n = 0; n < slices.size(); ++n) {
+    ++count_of[slices[n].acquisition];
+    changes += n > 0 && slices[n].acquisition != slices[n - 1].acquisition ? 1 : 0;
+  }
+  constexpr std::size_t kMostReturns = 1;
+  if (changes <= count_of.size() - 1 + kMostReturns) return {};
+  return fail(fmt::format("the slices of {} acquisitions or phases alternate {} times (AcquisitionNumber, "
+                          "TemporalPositionIdentifier): they are mixed in one series",
+                          count_of.size(), changes),
+              folder.string(), kGiveOnePhase);
+}
+
+Status check_alternation(std::span<const std::int16_t> hu, std::size_t pixels, const fs::path& folder) {
+  const std::size_t count = pixels == 0 ? 0 : hu.size() / pixels;
+  if (count < kFewSlices) return {};
+  const auto slice = [&](std::size_t k) { return hu.subspan(k * pixels, pixels); };
+  double to_next = 0.0, to_next_but_one = 0.0;
+  std::size_t closer = 0;
+  for (std::size_t k = 0; k + 2 < count; ++k) {
+    const double next = difference(slice(k), slice(k + 1)), next_but_one = difference(slice(k), slice(k + 2));
+    to_next += next;
+    to_next_but_one += next_but_one;
+    closer += next_but_one < next ? 1 : 0;
+  }
+  // Slices of one scan differ the more, the farther they lie apart; with nothing but noise both are alike.
+  constexpr double kClearly = 0.9, kMost = 0.8;
+  if (to_next_but_one >= kClearly * to_next || static_cast<double>(closer) < kMost * static_cast<double>(count - 2))
+    return {};
+  return fail(fmt::format("every slice resembles the next but one more than the next (mean difference {:.0f} %): the "
+                          "slices of two acquisitions or phases are mixed in one series",
+                          100.0 * to_next_but_one / to_next),
+              folder.string(), kGiveOnePhase);
+}
+
+namespace {
+
+constexpr double kHighestTissue_hu = 3071.0;  ///< Of a 12-bit CT: metal, enamel.
+
+/// Marks the padding that reaches the edge through padding.
+std::vector<bool> from_edge(const std::vector<bool>& is_padding, std::size_t columns, std::size_t rows) {
+  std::vector<bool> reached(is_padding.size(), false);
+  std::vector<std::size_t> open;
+  const auto reach = [&](std::size_t at) {
+    if (!is_padding[at] || reached[at]) return;
+    reached[at] = true;
+    open.push_back(at);
+  };
+  for (std::size_t i = 0; i < columns; ++i) {
+    reach(i);
+    reach((rows - 1) * columns + i);
+  }
+  for (std::size_t j = 0; j < rows; ++j) {
+    reach(j * columns);
+    reach(j * columns + columns - 1);
+  }
+  while (!open.empty()) {
+    const std::size_t at = open.back(), i = at % columns, j = at / columns;
+    open.pop_back();
+    if (i > 0) reach(at - 1);
+    if (i + 1 < columns) reach(at + 1);
+    if (j > 0) reach(at - columns);
+    if (j + 1 < rows) reach(at + columns);
+  }
+  return reached;
+}
+
+template <class Stored>
+PaddingCount fill_padding_of(const DicomSlice& slice, std::span<std::byte> pixels) {
+  const std::size_t count = pixels.size() / sizeof(Stored);
+  std::vector<Stored> numbers(count);
+  std::memcpy(numbers.data(), pixels.data(), count * sizeof(Stored));
+  std::vector<bool> is_padding(count);
+  const auto [low, high] = *slice.padding;
+  std::size_t found = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    is_padding[n] = numbers[n] >= low && numbers[n] <= high;
+    found += is_padding[n] ? 1 : 0;
+  }
+  if (found == 0) return {};
+  if (*padding_hu(slice) <= kHighestTissue_hu)
+    is_padding = from_edge(is_padding, static_cast<std::size_t>(slice.columns), static_cast<std::size_t>(slice.rows));
+  const double air = (kPaddingAir_hu - slice.intercept.value_or(0.0)) / slice.slope.value_or(1.0);
+  const auto stored_air =
+      static_cast<Stored>(std::clamp(std::round(air), static_cast<double>(std::numeric_limits<Stored>::min()),
+                                     static_cast<double>(std::numeric_limits<Stored>::max())));
+  PaddingCount result;
+  for (std::size_t n = 0; n < count; ++n) {
+    if (!is_padding[n]) continue;
+    numbers[n] = stored_air;
+    ++result.filled;
+  }
+  result.kept = found - result.filled;
+  std::memcpy(pixels.data(), numbers.data(), count * sizeof(Stored));
+  return result;
+}
+
+}  // namespace
+
+std::optional<double> padding_hu(const DicomSlice& slice) {
+  if (!slice.padding) return std::nullopt;
+  const double slope = slice.slope.value_or(1.0), intercept = slice.intercept.value_or(0.0);
+  const double hu = std::max((*slice.padding)[0] * slope, (*slice.padding)[1] * slope) + intercept;
+  return hu > kPaddingAir_hu ? std::optional(hu) : std::nullopt;
+}
+
+PaddingCount fill_padding(const RawVoxels& voxels, const DicomSlice& slice, std::span<std::byte> pixels) {
+  if (!padding_hu(slice) || slice.slope == 0.0) return {};
+  switch (voxels.type) {
+    case VoxelType::kInt8:
+      return fill_padding_of<std::int8_t>(slice, pixels);
+    case VoxelType::kUInt8:
+      return fill_padding_of<std::uint8_t>(slice, pixels);
+    case VoxelType::kInt16:
+      return fill_padding_of<std::int16_t>(slice, pixels);
+    default:
+      return fill_padding_of<std::uint16_t>(slice, pixels);
+  }
 }
 
 }  // namespace trocar::io::detail

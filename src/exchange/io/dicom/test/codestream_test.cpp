@@ -1,8 +1,8 @@
-#include "io/dicom/detail/codestream.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "io/dicom/detail/jpeg_segments.h"
 
 namespace trocar::testing {
 namespace {

@@ -1,5 +1,3 @@
-#include "io/dicom/detail/find_series.h"
-
 #include "dicom/testing/dicom_writer.h"
 #include "io/dicom/dicom_folder.h"
 #include "io/image/image_file.h"

@@ -8,7 +8,7 @@
 
 #include <cstring>
 
-#include "core/decimal_point.h"
+#include "core/text.h"
 
 namespace trocar::io::detail {
 namespace {

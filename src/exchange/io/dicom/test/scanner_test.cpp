@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "dicom/testing/dicom_writer.h"
 #include "io/image/image_file.h"
 #include "volume/sampling.h"

@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/files/input_file.h"
 #include "io/image/detail/payload.h"
-#include "io/image/detail/voxel_type.h"
 #include "volume/grid.h"
 
 namespace trocar::io::detail {
@@ -79,5 +79,10 @@ Result<ImageHeader> read_nifti_header(const InputFile& file);
 Result<ImageHeader> read_nrrd_header(const InputFile& file);
 Result<ImageHeader> read_meta_header(const InputFile& file);
 Result<ImageHeader> read_image_header(const InputFile& file, ImageFormat format);
+
+/// True if ITK itself adds an entry of this key to the fields of an image.
+inline bool is_library_field(std::string_view key) noexcept {
+  return key.starts_with("NRRD_") || key.starts_with("ITK_");
+}
 
 }  // namespace trocar::io::detail

@@ -1,12 +1,17 @@
 #include "io/image/detail/itk_image.h"
 
+#include <fcntl.h>
 #include <itkMetaDataObject.h>
+#include <itkObject.h>
+#include <nifti1_io.h>
+#include <unistd.h>
 
+#include <cstdio>
+#include <mutex>
 #include <optional>
 
 #include "core/available_memory.h"
 #include "io/image/detail/itk_format.h"
-#include "io/image/detail/quiet.h"
 
 namespace trocar::io::detail {
 namespace {
@@ -116,6 +121,51 @@ Result<TextFields> read_fields_with_itk(const CheckedImage& checked, ImageFormat
   } catch (const std::exception&) {
     return fail("the header cannot be read", checked.file.path().string(), "open it in 3D Slicer and save it as .nrrd");
   }
+}
+
+namespace {
+
+/// The original standard error, while at least one MutedStandardError exists.
+struct Muting {
+  std::mutex mutex;
+  int count = 0;
+  int saved = -1;
+};
+
+Muting& muting() {
+  static Muting shared;
+  return shared;
+}
+
+}  // namespace
+
+ItkCall::ItkCall() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    itk::Object::SetGlobalWarningDisplay(false);
+    nifti_set_debug_level(0);
+  });
+}
+
+MutedStandardError::MutedStandardError() {
+  Muting& shared = muting();
+  const std::lock_guard lock(shared.mutex);
+  if (shared.count++ > 0) return;
+  std::fflush(stderr);
+  shared.saved = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (shared.saved >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+  if (nowhere >= 0) ::close(nowhere);
+}
+
+MutedStandardError::~MutedStandardError() {
+  Muting& shared = muting();
+  const std::lock_guard lock(shared.mutex);
+  if (--shared.count > 0 || shared.saved < 0) return;
+  std::fflush(stderr);
+  ::dup2(shared.saved, STDERR_FILENO);
+  ::close(shared.saved);
+  shared.saved = -1;
 }
 
 }  // namespace trocar::io::detail

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/result.h"
+#include "core/text.h"
 #include "io/image/detail/payload.h"
-#include "io/image/detail/voxel_type.h"
 
 namespace trocar::io::detail {
 
@@ -44,5 +44,27 @@ enum class Packing { kCompressed, kPlain };
 /// format. The libraries do not always report a full disk: check the file afterwards.
 Status write_with_itk(const ItkImage& image, std::span<const std::byte> bytes, const std::filesystem::path& path,
                       ImageFormat format, Packing packing);
+
+/// Around every call of ITK: stops ITK and its NIfTI library from writing to the terminal (a defect of a file is
+/// reported once, by our error), and keeps the numbers of its text headers free of the user's locale. Cheap.
+/// Thread-safe.
+class ItkCall {
+ public:
+  ItkCall();
+
+ private:
+  DecimalPoint decimal_point_;
+};
+
+/// Discards standard error of the whole process during the lifetime of this object. The JPEG codecs of GDCM print
+/// there, even for valid 12-bit files, as do MetaIO and VNL for damaged headers, and have no option to disable it. Use
+/// it only around such calls of milliseconds. Thread-safe.
+class MutedStandardError {
+ public:
+  MutedStandardError();
+  ~MutedStandardError();
+  MutedStandardError(const MutedStandardError&) = delete;
+  MutedStandardError& operator=(const MutedStandardError&) = delete;
+};
 
 }  // namespace trocar::io::detail

@@ -6,8 +6,7 @@
 #include <fstream>
 #include <optional>
 
-#include "core/ascii.h"
-#include "core/parse_number.h"
+#include "core/text.h"
 #include "io/image/detail/image_header.h"
 #include "io/image/detail/text_header.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/ascii.h"
+#include "core/text.h"
 #include "io/image/detail/image_header.h"
 #include "io/image/detail/inflate_input.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -55,5 +56,10 @@ Result<CheckedImage> check_image_file(InputFile file, const ImageHeader& header,
 /// The same for a path: opens the file and reads its header first (see read_image_header).
 Result<CheckedImage> open_image_file(const std::filesystem::path& path, ImageFormat format,
                                      Check check = Check::kUnpack);
+
+/// Type of the numbers that a file stores.
+enum class VoxelType { kUInt8, kInt8, kUInt16, kInt16, kUInt32, kInt32, kUInt64, kInt64, kFloat, kDouble };
+
+std::size_t bytes_per_voxel(VoxelType type) noexcept;
 
 }  // namespace trocar::io::detail

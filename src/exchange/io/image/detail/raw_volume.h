@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "io/image/detail/voxel_type.h"
+#include "io/image/detail/payload.h"
 #include "volume/grid.h"
 
 namespace trocar::io::detail {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "io/image/detail/image_header.h"
-#include "io/image/detail/nifti_voxels.h"
+#include "io/image/detail/nifti.h"
 
 namespace trocar::io::detail {
 namespace fs = std::filesystem;

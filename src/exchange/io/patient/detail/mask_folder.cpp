@@ -4,6 +4,10 @@
 #include <array>
 #include <filesystem>
 
+#include "core/parallel.h"
+#include "io/dicom/detail/dicom_slice.h"
+#include "io/dicom/dicom_folder.h"
+#include "io/image/detail/payload.h"
 #include "io/patient/label_map.h"
 
 namespace trocar::io::detail {
@@ -66,6 +70,71 @@ void MaskFolder::add(anatomy::LabelSource source) {
 std::vector<anatomy::LabelSource> MaskFolder::take() {
   std::move(others_.begin(), others_.end(), std::back_inserter(joined_));
   return std::move(joined_);
+}
+
+namespace fs = std::filesystem;
+namespace {
+
+DescribedSegment description_of(const dicom::Segment& segment) {
+  return {segment.name, segment.number, segment.type_in_region, segment.codes, segment.meanings};
+}
+
+/// Name of a structure. `stem` is that of the file if it holds only this structure.
+std::string name_of(const dicom::Segment& segment, const LabelMap& map, const std::string& stem) {
+  const std::string name = map.name_of(description_of(segment));
+  if (name == anatomy::kIgnoredStructure || map.is_known(name) || !map.is_known(stem)) return name;
+  return map.name_of(stem);
+}
+
+}  // namespace
+
+Result<std::vector<fs::path>> find_dicom_labels(const fs::path& path) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  if (fs::is_directory(path, error)) {
+    TROCAR_TRY(files, files_below(path));
+  } else if (fs::is_regular_file(path, error) && !find_image_format(path)) {
+    files = {path};
+  }
+  std::vector<Result<dicom::ObjectKind>> kinds(files.size());
+  parallel_for(files.size(), 8, [&](std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) kinds[n] = dicom::find_object_kind(files[n]);
+  });
+  std::vector<fs::path> found;
+  for (std::size_t n = 0; n < files.size(); ++n) {
+    TROCAR_TRY(const dicom::ObjectKind kind, std::move(kinds[n]));
+    if (kind != dicom::ObjectKind::kOther) found.push_back(std::move(files[n]));
+  }
+  return found;
+}
+
+Result<std::vector<anatomy::LabelSource>> read_dicom_labels(const fs::path& path, const LabelMap& map,
+                                                            const dicom::CtReference& ct,
+                                                            std::vector<std::string>& warnings) {
+  const auto is_wanted = [&](const dicom::Segment& segment) {
+    return name_of(segment, map, {}) != anatomy::kIgnoredStructure;
+  };
+  TROCAR_TRY(dicom::Segmentation read, dicom::read_segmentation(path, ct, is_wanted, decode_frame));
+  for (const std::string& warning : read.warnings) warnings.push_back(path.filename().string() + ": " + warning);
+  for (const dicom::Segment& segment : read.segments)
+    if (const std::string contradiction = map.contradiction_in(description_of(segment)); !contradiction.empty())
+      warnings.push_back(path.filename().string() + ": " + contradiction);
+
+  const std::string stem = read.segments.size() == 1 ? path.stem().string() : std::string();
+  std::vector<anatomy::LabelSource> sources;
+  std::vector<bool> has_voxels(read.segments.size(), false);
+  for (dicom::SegmentVolume& volume : read.volumes) {
+    anatomy::LabelSource source{path.string(), std::move(volume.labels), {}, true, {}};
+    for (std::size_t n = 0; n < volume.segments.size(); ++n) {
+      has_voxels[volume.segments[n]] = true;
+      source.names.emplace_back(static_cast<int>(n + 1), name_of(read.segments[volume.segments[n]], map, stem));
+    }
+    sources.push_back(std::move(source));
+  }
+  for (std::size_t n = 0; n < read.segments.size(); ++n)
+    if (!has_voxels[n])
+      sources.push_back({path.string(), empty_over(ct.grid), {{1, name_of(read.segments[n], map, stem)}}, true, {}});
+  return sources;
 }
 
 }  // namespace trocar::io::detail

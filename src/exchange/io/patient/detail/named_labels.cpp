@@ -10,7 +10,6 @@
 #include "io/image/detail/payload.h"
 #include "io/image/detail/read_grid.h"
 #include "io/patient/detail/mask_folder.h"
-#include "io/patient/detail/nifti_label_table.h"
 #include "io/patient/detail/number_schemes.h"
 
 namespace trocar::io::detail {

@@ -28,4 +28,10 @@ Result<NumberScheme> load_scheme(const std::string& name, const anatomy::KnownSt
 /// those whose file the installation lacks.
 std::vector<NumberScheme> load_comparable_schemes(const anatomy::KnownStructures& structures);
 
+/// The names of numbers in a Caret label table, as TotalSegmentator writes it into a NIfTI header:
+/// <Label Key="5" …>liver</Label>, also in <![CDATA[…]]>. Numbers that no label has (0 is the background, above
+/// 255) are left out. Errors (at `where`): an entry without a number or an end, a number with two names, a name of more
+/// than 200 letters or with control characters.
+Result<std::map<int, std::string>> read_label_table(std::string_view xml, const std::string& where);
+
 }  // namespace trocar::io::detail

@@ -9,8 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "core/ascii.h"
-#include "core/parse_number.h"
+#include "core/text.h"
 #include "io/patient/detail/mask_folder.h"
 
 namespace trocar::io::detail {

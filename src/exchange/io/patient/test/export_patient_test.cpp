@@ -1,9 +1,8 @@
 // What is exported is read back: the same HU at the same places, the same structures.
-#include "io/patient/export_patient.h"
-
 #include <algorithm>
 
 #include "io/image/image_file.h"
+#include "io/patient/build_from_files.h"
 #include "io/patient/label_sources.h"
 #include "io/test/test_support.h"
 

@@ -3,10 +3,9 @@
 #include <algorithm>
 
 #include "config/toml.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "io/image/image_file.h"
 #include "io/image/testing/hand_made_nifti.h"
-#include "io/patient/detail/nifti_label_table.h"
 #include "io/patient/detail/number_schemes.h"
 #include "io/patient/label_map.h"
 #include "io/patient/label_sources.h"

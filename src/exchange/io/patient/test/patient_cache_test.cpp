@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/testing/data_folder.h"
 #include "io/patient/patient_folder.h"
 

@@ -1,11 +1,10 @@
-#include "io/patient/patient_panorama.h"
-
 #include <gtest/gtest.h>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "io/image/image_file.h"
 #include "io/markups_file.h"
+#include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
 #include "io/sequence/transform_file.h"
 

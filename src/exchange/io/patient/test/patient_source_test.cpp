@@ -1,4 +1,4 @@
-#include "io/patient/open_patient.h"
+#include "io/patient/patient_cache.h"
 #include "io/patient/patient_folder.h"
 #include "io/test/test_support.h"
 

@@ -1,12 +1,10 @@
-#include "io/patient/patient_thumbnail.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/testing/data_folder.h"
+#include "io/patient/patient_extras.h"
 
 namespace trocar::io {
 namespace {

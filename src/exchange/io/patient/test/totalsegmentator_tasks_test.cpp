@@ -3,7 +3,7 @@
 #include <set>
 
 #include "config/toml.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "io/image/image_file.h"
 #include "io/patient/label_map.h"
 #include "io/patient/label_sources.h"

@@ -10,7 +10,7 @@
 #include <optional>
 #include <set>
 
-#include "core/parse_number.h"
+#include "core/text.h"
 #include "io/detail/number_text.h"
 #include "io/image/detail/image_header.h"
 

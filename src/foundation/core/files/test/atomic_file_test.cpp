@@ -1,5 +1,3 @@
-#include "core/files/atomic_file.h"
-
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -7,7 +5,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 
 namespace trocar {
 inline namespace core {

@@ -1,7 +1,6 @@
-#include "core/files/data_dir.h"
-
 #include <gtest/gtest.h>
 
+#include "core/files/folders.h"
 #include "core/testing/data_folder.h"
 
 namespace trocar {

@@ -1,9 +1,8 @@
-#include "core/files/disk_space.h"
-
 #include <gtest/gtest.h>
 
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/file_system.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 
 namespace trocar {
 inline namespace core {

@@ -1,11 +1,10 @@
-#include "core/files/file_lock.h"
-
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/file_system.h"
+#include "core/files/folders.h"
 
 namespace trocar {
 inline namespace core {

@@ -10,8 +10,8 @@
 #include <fstream>
 
 #include "core/available_memory.h"
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "core/testing/source_dir.h"
 
 namespace trocar {

@@ -1,5 +1,3 @@
-#include "core/files/list_folder.h"
-
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -8,7 +6,7 @@
 #include <fstream>
 #include <thread>
 
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar {
 inline namespace core {

@@ -1,5 +1,3 @@
-#include "core/files/part_folder.h"
-
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -9,8 +7,9 @@
 #include <functional>
 #include <optional>
 
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
+#include "core/files/unfinished_output.h"
 
 namespace trocar {
 inline namespace core {

@@ -1,9 +1,9 @@
-#include "core/live/frame_cost.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+
+#include "core/live/live_schedule.h"
 
 namespace trocar {
 namespace {

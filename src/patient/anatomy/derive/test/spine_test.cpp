@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "anatomy/derive/derive_structures.h"
-#include "anatomy/derive/detail/spine_labels.h"
+#include "anatomy/detail/label_boxes.h"
 #include "anatomy/test/labelled_box.h"
 
 namespace trocar::anatomy {

@@ -11,10 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "anatomy/phantom/abdomen.h"
 #include "anatomy/phantom/render.h"
 #include "anatomy/testing/shipped_structures.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "volume/sampling.h"
 
 namespace trocar::anatomy::phantom {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "anatomy/build_patient.h"
-#include "anatomy/phantom/layer_data.h"
-#include "anatomy/tissue/plausible_hu.h"
-#include "core/files/data_dir.h"
+#include "anatomy/phantom/layer_scene.h"
+#include "anatomy/tissue/hounsfield.h"
+#include "core/files/folders.h"
 #include "volume/sampling.h"
 
 namespace trocar::anatomy::phantom {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "anatomy/known_structures.h"
-#include "anatomy/phantom/layer_data.h"
+#include "anatomy/phantom/layer_scene.h"
 #include "anatomy/phantom/phantom.h"
 #include "core/testing/changed_file.h"
 #include "core/testing/data_folder.h"

@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "anatomy/phantom/consistency.h"
-#include "anatomy/phantom/landmarks.h"
-#include "anatomy/phantom/liver_segment.h"
+#include "anatomy/phantom/liver.h"
 #include "anatomy/phantom/phantom.h"
 #include "anatomy/testing/shipped_structures.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 
 namespace trocar::anatomy::phantom {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "anatomy/label_table.h"
+#include "anatomy/patient.h"
 #include "volume/grid.h"
 
 namespace trocar::anatomy::detail {

@@ -20,4 +20,9 @@ void judge_place(const EdgeMatch& edges, const volume::GridGeometry& g, Mirrorin
 /// Single structures that were drawn elsewhere, in a segmentation that fits otherwise.
 void judge_single_places(const VirtualPatient& patient, const EdgeMatch& edges, std::vector<AnatomyFinding>& findings);
 
+/// Volumes, lengths and shapes of whole organs beyond those of any person, and large organs that a segmentation of many
+/// structures lacks although its scan reaches over their place. Both are told, not refused.
+void judge_sizes(const volume::LabelGrid& labels, const LabelTable& table, const LabelShapes& shapes,
+                 std::vector<AnatomyFinding>& findings);
+
 }  // namespace trocar::anatomy::detail

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "anatomy/build_patient.h"
-#include "anatomy/derive/detail/spine_labels.h"
+#include "anatomy/detail/label_boxes.h"
 #include "anatomy/plausibility/detail/usual_places.h"
 
 namespace trocar::anatomy::detail {

@@ -1,14 +1,12 @@
-#include "anatomy/tissue/hu_transfer.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "anatomy/tissue/hu_transfer_text.h"
+#include "anatomy/tissue/tissue_fields.h"
 #include "anatomy/tissue/tissue_table.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/testing/allocation_guard.h"
 #include "core/testing/allocation_guard.inc.h"
 

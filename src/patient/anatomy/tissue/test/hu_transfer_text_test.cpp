@@ -1,11 +1,10 @@
-#include "anatomy/tissue/hu_transfer_text.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "anatomy/testing/shipped_tissues.h"
+#include "anatomy/tissue/tissue_fields.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "config/toml_writer.h"
 

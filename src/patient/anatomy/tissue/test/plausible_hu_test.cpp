@@ -1,6 +1,6 @@
-#include "anatomy/tissue/plausible_hu.h"
-
 #include <gtest/gtest.h>
+
+#include "anatomy/tissue/hounsfield.h"
 
 namespace trocar::anatomy {
 namespace {

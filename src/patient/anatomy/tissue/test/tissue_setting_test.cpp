@@ -1,10 +1,9 @@
-#include "anatomy/tissue/tissue_setting.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "core/files/data_dir.h"
+#include "anatomy/tissue/tissue_settings.h"
+#include "core/files/folders.h"
 
 namespace trocar::anatomy {
 namespace {

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "anatomy/testing/shipped_tissues.h"
-#include "anatomy/tissue/hu_transfer_text.h"
-#include "core/files/data_dir.h"
+#include "anatomy/tissue/tissue_fields.h"
+#include "core/files/folders.h"
 #include "core/random.h"
 
 namespace trocar::anatomy {

@@ -4,8 +4,8 @@
 #include <sys/socket.h>
 
 #include "core/log.h"
-#include "web/security/client_address.h"
-#include "web/transport/detail/worker_threads.h"
+#include "web/security/request_origin.h"
+#include "web/transport/detail/connection.h"
 
 namespace trocar::web::detail {
 namespace {

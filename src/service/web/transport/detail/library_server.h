@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-#include "core/log_limit.h"
+#include "core/log.h"
 #include "web/transport/detail/connection.h"
 #include "web/transport/http_server.h"
 

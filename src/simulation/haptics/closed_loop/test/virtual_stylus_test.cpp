@@ -1,4 +1,4 @@
-#include "haptics/closed_loop/virtual_stylus.h"
+#include "haptics/coupling/virtual_stylus.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/closed_loop/encoder.h"
 #include "haptics/closed_loop/rotation.h"
+#include "haptics/coupling/device_preset.h"
 #include "haptics/test/tick_period.h"
 #include "lab/haptics/closed_loop.h"
 #include "lab/haptics/passivity_observer.h"

@@ -1,9 +1,8 @@
-#include "haptics/contact/contact_column.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "haptics/contact/contact_balance.h"
 #include "haptics/contact/test/flat_skin.h"
 
 namespace trocar::testing {

@@ -6,11 +6,11 @@
 #include <limits>
 #include <numbers>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/closed_loop/virtual_device.h"
 #include "haptics/contact/test/flat_skin.h"
+#include "haptics/coupling/virtual_stylus.h"
 #include "haptics/test/tick_period.h"
 #include "haptics/tick.h"
 #include "lab/haptics/closed_loop.h"

@@ -1,10 +1,9 @@
-#include "haptics/contact/palpation.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "haptics/contact/contact.h"
 #include "haptics/contact/test/flat_skin.h"
 
 namespace trocar::testing {

@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "anatomy/tissue/tissue_table.h"
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "core/testing/changed_file.h"
 #include "haptics/test/layered_patient.h"
 

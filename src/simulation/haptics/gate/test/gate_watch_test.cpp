@@ -5,11 +5,10 @@
 #include <limits>
 #include <numbers>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/random.h"
-#include "haptics/gate/detail/gate_stages.h"
-#include "haptics/gate/device_gate.h"
-#include "haptics/gate/loop_limits.h"
+#include "haptics/gate/gate_params.h"
+#include "haptics/gate/gate_stages.h"
 #include "haptics/gate/test/gate_rig.h"
 #include "haptics/test/tick_period.h"
 

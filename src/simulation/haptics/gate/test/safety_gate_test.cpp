@@ -9,10 +9,10 @@
 #include <functional>
 #include <limits>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/gate/device_gate.h"
+#include "haptics/gate/gate_params.h"
 #include "haptics/gate/test/gate_rig.h"
 #include "haptics/test/tick_period.h"
 

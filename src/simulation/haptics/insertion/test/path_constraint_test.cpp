@@ -1,5 +1,3 @@
-#include "haptics/insertion/path_constraint.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "core/random.h"
 #include "geometry/pose.h"
+#include "haptics/insertion/insertion_law.h"
 
 namespace trocar::haptics {
 namespace {

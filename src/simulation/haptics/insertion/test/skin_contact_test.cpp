@@ -1,10 +1,9 @@
 // The tip on unpierced skin: docs/physics.md V2.
-#include "haptics/insertion/skin_contact.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "haptics/insertion/insertion_path.h"
 #include "haptics/test/layered_patient.h"
 
 namespace trocar::testing {

@@ -1,12 +1,11 @@
 // The tissue below a layer that gives way: docs/physics.md P6.
-#include "haptics/insertion/soft_column.h"
-
 #include <gtest/gtest.h>
 
 #include <numeric>
 
+#include "haptics/insertion/insertion_path.h"
 #include "haptics/test/layered_patient.h"
-#include "telemetry/tick_pose.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::testing {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/closed_loop/virtual_stylus.h"
+#include "haptics/coupling/virtual_stylus.h"
 #include "haptics/insertion/insertion_law.h"
 #include "haptics/test/layered_patient.h"
 

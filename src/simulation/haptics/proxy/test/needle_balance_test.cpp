@@ -1,6 +1,4 @@
 // The needle between device, shaft and tip; what tissue bears at the tip: docs/physics.md B2, B3.
-#include "haptics/proxy/needle_balance.h"
-
 #include <gtest/gtest.h>
 
 #include "core/random.h"

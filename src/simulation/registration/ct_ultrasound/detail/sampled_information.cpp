@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "core/check.h"
 #include "core/parallel.h"
+#include "core/result.h"
 
 namespace trocar::registration::detail {
 namespace {

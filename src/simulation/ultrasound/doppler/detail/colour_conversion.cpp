@@ -7,10 +7,10 @@
 #include <functional>
 #include <numbers>
 
-#include "core/check.h"
 #include "core/parallel.h"
+#include "core/result.h"
 #include "ultrasound/scanner/scan_annotation.h"
-#include "volume/bitmap_font.h"
+#include "volume/image.h"
 
 namespace trocar::ultrasound {
 namespace {

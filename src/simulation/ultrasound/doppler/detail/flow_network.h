@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "ultrasound/doppler/flow_table.h"
+#include "ultrasound/doppler/vessel_flow.h"
 #include "volume/centreline.h"
 
 namespace trocar::ultrasound::detail {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/testing/allocation_guard.h"
 #include "ultrasound/doppler/test/tube_patient.h"
 #include "ultrasound/engine/b_mode.h"

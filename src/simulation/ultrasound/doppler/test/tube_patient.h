@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "ultrasound/doppler/flow_table.h"
+#include "ultrasound/doppler/vessel_flow.h"
 #include "volume/testing/centred_grid.h"
 
 namespace trocar::testing {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ultrasound/doppler/test/tube_patient.h"
 
 namespace trocar::ultrasound {

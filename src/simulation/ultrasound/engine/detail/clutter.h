@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ultrasound/engine/b_mode.h"
 #include "ultrasound/engine/detail/frame_state.h"
 #include "ultrasound/engine/detail/scan_plan.h"
 
@@ -26,5 +27,16 @@ void add_clutter(const ScanPlan& plan, FrameState& frame, int first, int last) n
 /// Lowers the echoes of a scanline to the level of the harmonic, which grows with depth. Nothing for a fundamental
 /// beam.
 void generate_harmonic(const ScanPlan& plan, FrameState& frame, int line) noexcept;
+
+}  // namespace trocar::ultrasound::detail
+
+/// Multiple reflections (docs/physics.md U7).
+namespace trocar::ultrasound::detail {
+
+/// Adds ring-down behind gas on one scanline, before the point spread.
+void add_ring_down(const ScanPlan& plan, FrameState& frame, int line) noexcept;
+/// Adds echoes between the face and a smooth reflector perpendicular to the scanline: all echoes repeat, each time
+/// deeper by the reflector's depth (A-lines).
+void add_reverberation(const ScanPlan& plan, const FrameState& frame, int angle, int line, BasebandFrame& out) noexcept;
 
 }  // namespace trocar::ultrasound::detail

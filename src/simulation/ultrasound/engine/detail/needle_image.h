@@ -7,7 +7,7 @@
 
 #include "ultrasound/engine/detail/frame_state.h"
 #include "ultrasound/engine/detail/scan_plan.h"
-#include "ultrasound/engine/needle_echo.h"
+#include "ultrasound/engine/echo_engine.h"
 
 /// Needles in the image (docs/physics.md U13): echo, comet tail, shadow, and the tissue that they displace.
 namespace trocar::ultrasound::detail {

@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 #include "ultrasound/engine/detail/needle_image.h"
-#include "ultrasound/engine/detail/smooth_noise.h"
+#include "ultrasound/engine/detail/tissue_texture.h"
 
 namespace trocar::ultrasound::detail {
 namespace {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "ultrasound/engine/detail/scatterer_bricks.h"
+#include "ultrasound/engine/beam.h"
+#include "ultrasound/engine/detail/scatterer_cell.h"
 #include "ultrasound/engine/detail/scatterer_gain.h"
-#include "ultrasound/engine/harmonic_levels.h"
 
 namespace trocar::ultrasound::detail {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "ultrasound/engine/detail/scatterer_bricks.h"
+#include "ultrasound/engine/detail/scatterer_cell.h"
 
 namespace trocar::ultrasound::detail {
 

@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 #include "ultrasound/engine/detail/border_fit.h"
-#include "ultrasound/engine/detail/smooth_noise.h"
+#include "ultrasound/engine/detail/tissue_texture.h"
 #include "ultrasound/engine/detail/tissue_walk.h"
 
 namespace trocar::ultrasound::detail {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/check.h"
 #include "core/parallel.h"
+#include "core/result.h"
 
 namespace trocar::ultrasound::detail {
 

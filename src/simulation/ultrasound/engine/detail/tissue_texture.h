@@ -22,3 +22,15 @@ void make_texture(const ScanPlan& plan, const FrameState& frame, const WalkResul
                   Texture& texture) noexcept;
 
 }  // namespace trocar::ultrasound::detail
+
+/// Sheets too thin for CT and labels: diaphragm, walls of vessels and hollow organs (docs/physics.md U6).
+namespace trocar::ultrasound::detail {
+
+/// Raises the scatterers' gain of a walk in the walls beside its borders. Call after make_texture.
+void add_walls(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, WalkResult& walk,
+               const Texture& texture) noexcept;
+
+/// Smooth noise, -1..1, with a lattice unit of 1: a pure function of the position.
+float smooth_noise(float x, float y, float z) noexcept;
+
+}  // namespace trocar::ultrasound::detail

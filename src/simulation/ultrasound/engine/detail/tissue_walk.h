@@ -42,6 +42,9 @@ void store_borders(FrameState& frame, const WalkResult& result, int row) noexcep
 /// Stores the borders of row `from` as those of a row half way to `other`, where that has the same borders.
 void store_borders_between(FrameState& frame, int from, int other, int row) noexcept;
 
+/// Fills WalkResult::to_rest for a line; place_line calls it where the patient moves.
+void find_rest(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
+               WalkResult& result) noexcept;
 /// Computes only the positions of the samples (index, cell).
 void place_line(const ScanPlan& plan, const FrameState& frame, const LineWalk& line, float zeta,
                 WalkResult& result) noexcept;

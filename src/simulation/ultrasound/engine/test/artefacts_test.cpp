@@ -1,8 +1,8 @@
-#include "ultrasound/engine/artefacts.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "ultrasound/engine/echo_engine.h"
 
 namespace trocar::ultrasound {
 namespace {

@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 
 namespace trocar::ultrasound {
 namespace {

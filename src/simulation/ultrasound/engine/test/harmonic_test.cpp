@@ -1,8 +1,8 @@
 // Tissue harmonic imaging against closed forms and against the fundamental image of the same scene.
 #include <numbers>
 
+#include "ultrasound/engine/beam.h"
 #include "ultrasound/engine/detail/clutter.h"
-#include "ultrasound/engine/harmonic_levels.h"
 #include "ultrasound/test/physics_lab.h"
 
 namespace trocar::ultrasound {

@@ -1,9 +1,9 @@
-#include "ultrasound/live/scan_schedule.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "ultrasound/live/scan_picture.h"
 
 namespace trocar::ultrasound {
 namespace {

@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "ultrasound/live/picture_maker.h"
-#include "ultrasound/panorama/panorama_on_demand.h"
+#include "ultrasound/panorama/panorama.h"
 #include "ultrasound/panorama/test/panorama_lab.h"
 
 namespace trocar::ultrasound {

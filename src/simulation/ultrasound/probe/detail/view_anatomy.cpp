@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/text.h"
 #include "ultrasound/tissue/detail/tissue_volume.h"
 #include "volume/sampling.h"
 
@@ -107,6 +108,19 @@ Result<Vec3> find_target_point(const anatomy::VirtualPatient& patient, const Pro
                        ? facing_point(patient.labels, target->id, centroid(patient.labels, through->id))
                        : nearest_voxel(patient.labels, target->id, centroid(patient.labels, target->id));
   return Vec3(p_P + view.offset_mm);
+}
+
+std::string plain_name(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (ascii::is_letter_or_digit(c) || c == '*') text += ascii::to_lower(c);
+  }
+  return text;
+}
+
+bool matches_pattern(std::string_view pattern, std::string_view name) noexcept {
+  if (pattern.ends_with('*')) return name.starts_with(pattern.substr(0, pattern.size() - 1));
+  return pattern == name;
 }
 
 }  // namespace trocar::ultrasound::detail

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "anatomy/patient.h"
@@ -28,5 +30,10 @@ struct ViewAnatomy {
 
 /// The point of the patient that a view aims at. Errors: the patient lacks the view's target.
 Result<Vec3> find_target_point(const anatomy::VirtualPatient& patient, const ProbeView& view);
+
+/// Normal form of a label's name or pattern for comparison: only lower case letters, digits and '*'.
+std::string plain_name(std::string_view name);
+/// True if a plain name matches a plain pattern; '*' matches any ending.
+bool matches_pattern(std::string_view pattern, std::string_view name) noexcept;
 
 }  // namespace trocar::ultrasound::detail

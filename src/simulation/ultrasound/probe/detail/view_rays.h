@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "ultrasound/probe/detail/view_anatomy.h"
+#include "ultrasound/probe/probe_view.h"
 #include "ultrasound/probe/scan_geometry.h"
-#include "ultrasound/probe/view_visibility.h"
 
 /// Visible share of a view's subject from a pose, by straight scanlines through the labels (docs/physics.md U16).
 namespace trocar::ultrasound::detail {

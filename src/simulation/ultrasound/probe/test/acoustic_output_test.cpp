@@ -1,8 +1,6 @@
-#include "ultrasound/probe/acoustic_output.h"
-
 #include <gtest/gtest.h>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "core/testing/changed_file.h"
 #include "ultrasound/probe/transducer.h"
 

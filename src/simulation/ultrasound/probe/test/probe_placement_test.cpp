@@ -8,7 +8,7 @@
 
 #include "anatomy/phantom/layers.h"
 #include "anatomy/phantom/phantom.h"
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ultrasound/probe/probe_contact.h"
 #include "volume/sampling.h"
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ultrasound/probe/transducer.h"
 
 namespace trocar::ultrasound {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 
 namespace trocar::ultrasound {
 namespace {

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "core/files/atomic_file.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 #include "core/testing/changed_file.h"
 #include "ultrasound/probe/scan_geometry.h"
 

@@ -1,12 +1,11 @@
-#include "ultrasound/probe/view_visibility.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "ultrasound/probe/probe_placement.h"
+#include "ultrasound/probe/probe_view.h"
 #include "ultrasound/tissue/test/make_block.h"
 
 namespace trocar::ultrasound {

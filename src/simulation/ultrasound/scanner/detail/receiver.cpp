@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "ultrasound/engine/harmonic_levels.h"
+#include "ultrasound/engine/beam.h"
 #include "ultrasound/scanner/detail/scanner_kernels.h"
 
 namespace trocar::ultrasound::detail {

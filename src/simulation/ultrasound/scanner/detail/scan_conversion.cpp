@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "ultrasound/scanner/detail/scanner_kernels.h"
 
 namespace trocar::ultrasound::detail {

@@ -1,10 +1,9 @@
-#include "ultrasound/scanner/automatic_gain.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "core/random.h"
+#include "ultrasound/scanner/display_settings.h"
 #include "ultrasound/scanner/scanner.h"
 
 namespace trocar::ultrasound {

@@ -1,9 +1,9 @@
-#include "ultrasound/scanner/caliper.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "ultrasound/scanner/measurements.h"
 
 namespace trocar::ultrasound {
 namespace {

@@ -1,12 +1,10 @@
-#include "ultrasound/scanner/scan_preset.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
-#include "ultrasound/live/scan_request.h"
+#include "core/files/folders.h"
+#include "ultrasound/live/scan_picture.h"
+#include "ultrasound/scanner/display_settings.h"
 
 namespace trocar::ultrasound {
 namespace {

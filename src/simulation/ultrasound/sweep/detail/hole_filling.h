@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ultrasound/sweep/freehand_options.h"
+#include "ultrasound/sweep/freehand.h"
 #include "volume/grid.h"
 
 namespace trocar::ultrasound::detail {

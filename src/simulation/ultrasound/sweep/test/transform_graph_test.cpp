@@ -1,9 +1,9 @@
-#include "ultrasound/sweep/transform_graph.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+
+#include "ultrasound/sweep/tracked_sequence.h"
 
 namespace trocar::ultrasound {
 namespace {

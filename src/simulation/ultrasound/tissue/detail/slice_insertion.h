@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ultrasound/sweep/freehand_options.h"
+#include "ultrasound/sweep/freehand.h"
 #include "ultrasound/sweep/tracked_sequence.h"
 #include "volume/grid.h"
 

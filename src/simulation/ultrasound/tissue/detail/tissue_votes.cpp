@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/check.h"
+#include "core/result.h"
 #include "ultrasound/tissue/detail/tissue_volume.h"
 
 namespace trocar::ultrasound::detail {

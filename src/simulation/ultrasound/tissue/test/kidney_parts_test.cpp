@@ -1,10 +1,10 @@
 // Cortex, pyramids and sinus of a kidney that labels and CT show as one tissue.
 
-#include "ultrasound/tissue/detail/kidney_parts.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
+
+#include "ultrasound/tissue/detail/strands.h"
 
 namespace trocar::ultrasound::detail {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "xray/contrast/contrast_table.h"
 #include "xray/contrast/duct_tree.h"
-#include "xray/contrast/iodine.h"
 
 namespace trocar::xray::detail {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/files/data_dir.h"
+#include "core/files/folders.h"
 #include "duct_patient.h"
 #include "volume/sampling.h"
 

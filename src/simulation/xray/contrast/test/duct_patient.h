@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "anatomy/patient.h"
-#include "geometry/segment.h"
+#include "geometry/shapes.h"
 #include "volume/testing/centred_grid.h"
 
 namespace trocar::testing {

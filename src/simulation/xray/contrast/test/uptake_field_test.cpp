@@ -1,10 +1,9 @@
-#include "xray/contrast/detail/uptake_field.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
+#include "xray/contrast/detail/stain_site.h"
 
 namespace trocar::xray::detail {
 namespace {

@@ -1,3 +1,5 @@
+#include "xray/detector/detector.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,9 +8,6 @@
 #include <numeric>
 
 #include "core/parallel.h"
-#include "xray/detector/image_blur.h"
-#include "xray/detector/lag.h"
-#include "xray/detector/quantum_noise.h"
 #include "xray/detector/scatter.h"
 
 namespace trocar::xray {

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "xray/fluoroscopy/subtraction.h"
-
 namespace trocar::xray {
 namespace {
 

@@ -1,6 +1,6 @@
-#include "xray/fluoroscopy/dose.h"
-
 #include <gtest/gtest.h>
+
+#include "xray/fluoroscopy/exposure_control.h"
 
 namespace trocar::xray {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "xray/fluoroscopy/dose.h"
-
 namespace trocar::xray {
 namespace {
 

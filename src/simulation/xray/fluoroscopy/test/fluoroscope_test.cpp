@@ -8,7 +8,7 @@
 #include "anatomy/patient.h"
 #include "core/parallel.h"
 #include "motion/testing/sliding_motion.h"
-#include "xray/detector/image_blur.h"
+#include "xray/detector/scatter.h"
 #include "xray/fluoroscopy/testing/trunk_phantom.h"
 
 namespace trocar::xray {

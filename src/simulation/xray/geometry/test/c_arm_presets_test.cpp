@@ -1,11 +1,9 @@
-#include "xray/geometry/c_arm_presets.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "xray/geometry/c_arm.h"
 
 namespace trocar::xray {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "xray/projection/mass_image.h"
+#include "xray/projection/xray_volume.h"
 
 namespace trocar::xray::detail {
 

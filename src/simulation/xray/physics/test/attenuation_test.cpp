@@ -1,9 +1,9 @@
-#include "xray/physics/attenuation.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "xray/physics/materials.h"
 
 namespace trocar::xray {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "xray/physics/attenuation.h"
+#include "xray/physics/materials.h"
 
 namespace trocar::xray {
 namespace {

@@ -5,8 +5,7 @@
 #include <fstream>
 
 #include "anatomy/testing/shipped_tissues.h"
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::xray {
 namespace {

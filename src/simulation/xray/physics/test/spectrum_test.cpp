@@ -1,12 +1,11 @@
-#include "xray/physics/spectrum.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
-#include "xray/physics/attenuation.h"
+#include "xray/physics/beam.h"
+#include "xray/physics/materials.h"
 
 namespace trocar::xray {
 namespace {

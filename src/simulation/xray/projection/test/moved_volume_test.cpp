@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "motion/testing/sliding_motion.h"
-#include "xray/projection/project.h"
-#include "xray/tools/iodine_pieces.h"
+#include "xray/projection/xray_volume.h"
+#include "xray/tools/tool_shape.h"
 
 namespace trocar::xray {
 namespace {

@@ -1,5 +1,3 @@
-#include "xray/projection/project.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "volume/sampling.h"
 #include "volume/testing/simd_targets.h"
 #include "xray/physics/beam.h"
+#include "xray/projection/xray_volume.h"
 
 namespace trocar::xray {
 namespace {

@@ -4,9 +4,8 @@
 
 #include <cmath>
 
-#include "xray/physics/attenuation.h"
 #include "xray/physics/beam.h"
-#include "xray/projection/project.h"
+#include "xray/physics/materials.h"
 
 namespace trocar::xray {
 namespace {

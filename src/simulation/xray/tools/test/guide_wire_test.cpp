@@ -1,8 +1,8 @@
-#include "xray/tools/guide_wire.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "xray/tools/tool_shape.h"
 
 namespace trocar::xray {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "xray/tools/iodine_pieces.h"
 
 namespace trocar::xray {
 namespace {

@@ -1,13 +1,11 @@
-#include "xray/tools/tool_table.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <fstream>
 
-#include "core/files/data_dir.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "xray/tools/tool_shape.h"
 
 namespace trocar::xray {
 namespace {

@@ -1,9 +1,8 @@
-#include "attempt/guide/gun_shot.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
 
+#include "attempt/guide/needle_view.h"
 #include "attempt/guide/puncture_guide.h"
 #include "cases/testing/cached_case.h"
 

@@ -1,9 +1,8 @@
-#include "attempt/guide/needle_shaft.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "attempt/guide/needle_view.h"
 #include "geometry/pose.h"
 #include "telemetry/testing/sample_at.h"
 

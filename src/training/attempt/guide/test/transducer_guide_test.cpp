@@ -1,8 +1,8 @@
-#include "attempt/guide/transducer_guide.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "attempt/guide/puncture_guide.h"
 
 namespace trocar::attempt {
 namespace {

@@ -1,9 +1,9 @@
-#include "attempt/live/detail/force_trace.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "attempt/live/attempt_view.h"
 
 namespace trocar::attempt {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cases/testing/cached_case.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 #include "core/testing/no_threads.h"
 
 namespace trocar::attempt {

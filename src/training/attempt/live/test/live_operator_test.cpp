@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "anatomy/phantom/phantom.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::attempt {
 namespace {

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "anatomy/phantom/phantom.h"
-#include "attempt/live/attempt_event.h"
-#include "attempt/record/other_forces.h"
-#include "core/files/temporary_folder.h"
+#include "attempt/live/attempt_view.h"
+#include "attempt/record/session_case.h"
+#include "core/files/folders.h"
 #include "haptics/force_version.h"
-#include "xray/tools/guide_wire.h"
+#include "xray/tools/tool_shape.h"
 
 namespace trocar::attempt {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "attempt/offline/run_session.h"
 #include "cases/testing/cached_case.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
 
 namespace trocar::attempt {
 namespace {

@@ -1,8 +1,7 @@
-#include "attempt/record/contrast_replay.h"
-
 #include <gtest/gtest.h>
 
-#include "core/files/data_dir.h"
+#include "attempt/record/xray_replay.h"
+#include "core/files/folders.h"
 #include "xray/contrast/test/duct_patient.h"
 
 namespace trocar::attempt {

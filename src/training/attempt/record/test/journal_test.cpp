@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "config/json.h"
-#include "core/files/atomic_file.h"
-#include "core/files/temporary_folder.h"
+#include "core/files/folders.h"
+#include "core/files/output_file.h"
 
 namespace trocar::attempt {
 namespace {

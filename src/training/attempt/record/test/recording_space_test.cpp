@@ -1,6 +1,6 @@
-#include "attempt/record/recording_space.h"
-
 #include <gtest/gtest.h>
+
+#include "attempt/record/journal.h"
 
 namespace trocar::attempt {
 namespace {

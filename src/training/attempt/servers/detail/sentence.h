@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "core/ascii.h"
+#include "core/text.h"
 
 namespace trocar::attempt::detail {
 

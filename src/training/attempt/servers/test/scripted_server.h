@@ -10,7 +10,7 @@
 
 #include "attempt/servers/server_host.h"
 #include "core/testing/fake_clock.h"
-#include "telemetry/gate_state.h"
+#include "telemetry/tick_sample.h"
 
 namespace trocar::testing {
 

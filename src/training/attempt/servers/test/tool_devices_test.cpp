@@ -1,12 +1,11 @@
-#include "attempt/servers/tool_devices.h"
-
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
 #include <algorithm>
 #include <fstream>
 
-#include "core/files/temporary_folder.h"
+#include "attempt/servers/haptic_servers.h"
+#include "core/files/folders.h"
 
 namespace trocar::attempt {
 namespace {

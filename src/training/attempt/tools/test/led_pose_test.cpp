@@ -1,9 +1,9 @@
-#include "attempt/tools/led_pose.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <numbers>
+
+#include "attempt/tools/transducer_motion.h"
 
 namespace trocar::attempt {
 namespace {

@@ -1,8 +1,7 @@
-#include "attempt/tools/resting_transducer.h"
-
 #include <gtest/gtest.h>
 
 #include "anatomy/phantom/phantom.h"
+#include "attempt/tools/transducer_motion.h"
 #include "volume/sampling.h"
 
 namespace trocar::attempt {
