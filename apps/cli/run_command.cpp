@@ -15,6 +15,7 @@
 #include "report/session_analysis.h"
 #include "run_results.h"
 #include "storage/score_json.h"
+#include "storage/ticks_hash.h"
 #include "tasks/fit_to_patient.h"
 
 namespace trocar::cli {
@@ -72,7 +73,7 @@ void print_server(const attempt::ServerFigures& server) {
 /// Whether a replay gave the session's ticks bit by bit; empty: no replay, or the session is too old to tell.
 std::optional<bool> has_same_ticks(const attempt::RunOptions& run, const attempt::RunResult& result) {
   if (run.replayed == nullptr || run.replayed->ticks_hash.empty() || result.ticks_hash.empty()) return std::nullopt;
-  return run.replayed->ticks_hash == result.ticks_hash;
+  return storage::hash_ticks(run.replayed->samples) == result.ticks_hash;
 }
 
 config::Json result_json(const RunArguments& arguments, const cases::Case& the_case, const attempt::RunResult& result) {

@@ -6,6 +6,7 @@
 
 #include "storage/detail/columns.h"
 #include "storage/detail/database.h"
+#include "storage/ticks_hash.h"
 
 namespace trocar::storage::detail {
 namespace {
@@ -153,3 +154,11 @@ std::optional<RowsDigest> read_checksum(soci::session& database, const CheckedRo
   return read_digest(database, rows.name);
 }
 }  // namespace trocar::storage::detail
+
+namespace trocar::storage {
+
+std::string hash_ticks(std::span<const telemetry::TickSample> samples) {
+  return detail::digest_of(samples);
+}
+
+}  // namespace trocar::storage
