@@ -405,6 +405,13 @@ TEST(EveryConsumer, ReplayShowsTheTag) {
   ASSERT_TRUE(again) << again.error().text();
   EXPECT_EQ(again->ticks_hash, first->ticks_hash) << "a replay is exact";
 
+  storage::Session damaged = replay->session();
+  damaged.samples[5].breathing = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(attempt::AttemptReplay::of(damaged, open)) << "a tick without a phase";
+  damaged = replay->session();
+  damaged.parameters.front().options.push_back("motion.period=0");
+  EXPECT_FALSE(attempt::AttemptReplay::of(damaged, open)) << "a breath of 0 s";
+
   moving->motion = motion::testing::uniform_model({0.0, 0.0, 5.0});
   EXPECT_FALSE(attempt::AttemptReplay::load(options.session, open)) << "the patient moves in another way";
 }

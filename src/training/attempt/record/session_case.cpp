@@ -63,7 +63,19 @@ Result<std::vector<storage::SessionParameters>> replay_parameters(const storage:
 
 Status check_motion(const storage::Session& session, const anatomy::VirtualPatient& patient) {
   const std::string now = anatomy::motion_hash(patient);
-  if (session.info.motion_hash.empty() || session.info.motion_hash == now) return {};
+  if (session.info.motion_hash.empty()) return {};
+  for (const storage::SessionParameters& parameters : session.parameters) {
+    haptics::HapticOptions options;
+    haptics::DeviceCapability device;
+    TROCAR_TRY_STATUS(haptics::restore_options(parameters.options, options, device));
+    TROCAR_TRY_STATUS(motion::check(options.motion));
+  }
+  const auto has_phase = [](const telemetry::TickSample& sample) {
+    return sample.breathing >= 0.0 && sample.breathing <= 1.0;
+  };
+  if (!std::ranges::all_of(session.samples, has_phase))
+    return fail("a tick has no phase of the patient's motion", "session", "record the attempt again");
+  if (session.info.motion_hash == now) return {};
   return fail_usage(
       fmt::format("the patient moved in another way when the session was recorded: hash {} of motion.toml, "
                   "this one has {}",
