@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "attempt/servers/local_server.h"
+#include "attempt/servers/server_hosts.h"
 #include "attempt/servers/server_supervisor.h"
 #include "core/progress.h"
 

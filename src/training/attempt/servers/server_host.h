@@ -31,8 +31,8 @@ class ServerConnection {
   virtual void frame_drawn() = 0;
 };
 
-/// Process of a haptic server. Plug point: a process that this program started (local_server.h), a server that was
-/// already running (remote_server.h), or a simulated server of a test.
+/// Process of a haptic server. Plug point: a process that this program started (LocalServer), a server that was
+/// already running (RemoteServer), or a simulated server of a test.
 class ServerHost {
  public:
   virtual ~ServerHost() = default;

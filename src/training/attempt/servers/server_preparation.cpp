@@ -36,6 +36,7 @@ double seconds(milliseconds duration) noexcept {
 void ServerSupervisor::prepare(const PreparationRequest& request) {
   request_ = request;
   stalls_left_ = kMostStallsOfStart;
+  requested_ = clock_->now();
   request_->place.v_P = request_->place.w_P = Vec3::Zero();
   // A soft hand would let the stylus sag across the needle's channel before the forces are on: they would not start.
   request_->place.is_rigid = true;
@@ -191,17 +192,18 @@ bool ServerSupervisor::is_near(const telemetry::TickSample& sample, double most_
 }
 
 Status ServerSupervisor::step_placing() {
+  if (is_start_held_) in_state_s_ = 0.0;
   TROCAR_TRY_STATUS(check_time("the device did not reach the pose of the operator's hand",
                                "scripted operators work only with simulated devices: trocar-hapticd --device virtual"));
   const std::optional<telemetry::TickSample> newest = connection_->newest();
   if (!newest) return {};
   if (has_person()) {
-    if (client_.status.fault == telemetry::GateFault::kNone) start_forces(nullptr);
+    if (client_.status.fault == telemetry::GateFault::kNone && !is_start_held_) start_forces(nullptr);
     return {};
   }
   link::HandTarget place = request_->place;
   place.server_time_s = newest->time_s;
-  if (was_placed_ && newest->time_s != placed_newest_s_ && is_near(*newest, kSagging_mm)) {
+  if (!is_start_held_ && was_placed_ && newest->time_s != placed_newest_s_ && is_near(*newest, kSagging_mm)) {
     start_forces(&place);
   } else if (clock_->now() - placed_ > kPlaceAgain) {
     place.is_placed = true;

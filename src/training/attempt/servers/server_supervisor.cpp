@@ -122,7 +122,7 @@ std::string ServerSupervisor::poll_connection() {
       return fail_with({fmt::format("the safety gate has latched a fault: {}", to_string(fault)), host_->endpoint(),
                         "see the server's flight record for the cause; restart the server"});
     ++stalls_;
-    stalls_left_ = std::max(0, stalls_left_ - 1);
+    if (!is_early()) stalls_left_ = std::max(0, stalls_left_ - 1);
     const bool was_on = state_ == ServerState::kOn;
     enter(ServerState::kConnecting);
     if (was_on) return note_interruption("stopped because this machine is too busy");
@@ -159,7 +159,16 @@ bool ServerSupervisor::is_forgivable_stall() const {
   const bool is_stall = fault == telemetry::GateFault::kLoopStalled || fault == telemetry::GateFault::kLoopSlow;
   if (!request_) return false;
   if (!has_person()) return is_stall;
-  return stalls_left_ > 0 && !is_stopped_ && (is_stall || fault == telemetry::GateFault::kDeviceSilent);
+  return (stalls_left_ > 0 || is_early()) && !is_stopped_ && (is_stall || fault == telemetry::GateFault::kDeviceSilent);
+}
+
+bool ServerSupervisor::is_early() const {
+  constexpr auto kLongestPreparation = 30s;
+  return state_ < ServerState::kStarting && clock_->now() - requested_ < kLongestPreparation;
+}
+
+bool ServerSupervisor::is_loading() const noexcept {
+  return state_ < ServerState::kPlacing || state_ == ServerState::kRestartDue;
 }
 
 bool ServerSupervisor::is_device_lost() const {
@@ -332,6 +341,7 @@ void ServerSupervisor::stop_forces() {
 void ServerSupervisor::resume_forces() {
   is_stopped_ = false;
   stalls_left_ = is_fresh() ? 0 : kMostStallsOfStart;
+  requested_ = clock_->now();
   if (state_ == ServerState::kFailed) returns_.clear();
   const Status alive = host_->check();
   if (is_fresh() && alive) {

@@ -74,10 +74,15 @@ class ServerSupervisor {
   /// Sets where the tool is placed when the server is prepared again.
   void place_at(const telemetry::NeedlePlace& needle);
   void place_at(const Pose& X_PTool) { place_at(telemetry::NeedlePlace{X_PTool, 0.0}); }
+  /// true: the preparation ends before the forces are switched on, however long, until false is set. While another
+  /// server loads its scene, this one would get no processor time for its loop.
+  void hold_start(bool is_held) noexcept { is_start_held_ = is_held; }
   /// Performs one step. Returns the text of a note; empty: none.
   std::string poll();
 
   ServerState state() const noexcept { return state_; }
+  /// Before the scene is loaded, or being restarted.
+  bool is_loading() const noexcept;
   /// kOn, connected, and a tick was taken within the last 250 ms: otherwise the present pose of the tool is unknown.
   bool is_fresh() const noexcept;
   const Error& failure() const noexcept { return failure_; }  ///< In kFailed.
@@ -128,6 +133,8 @@ class ServerSupervisor {
   bool has_person() const noexcept { return control_ == DeviceControl::kPersonsHand; }
   bool is_device_lost() const;
   bool is_slow() const;
+  /// The forces were not yet switched on, and not for long: a stall says nothing but that the machine is busy.
+  bool is_early() const;
   /// A stall whose fault may be reset without the user's consent.
   bool is_forgivable_stall() const;
 
@@ -167,6 +174,7 @@ class ServerSupervisor {
   std::string banner_, recovery_;
   std::string interrupted_by_;  ///< Cause of the interruption since the forces were last on; empty: none.
   bool is_stopped_ = false;     ///< Stopped by the user.
+  bool is_start_held_ = false;  ///< See hold_start.
   bool was_heard_ = false;      ///< The server has sent a welcome at least once.
 
   // Timers.
@@ -174,8 +182,9 @@ class ServerSupervisor {
   double in_state_s_ = 0.0;         ///< Without the time in which poll() was not called.
   double without_control_s_ = 0.0;  ///< in_state_s_ when control was first refused; 0: it was not.
   Clock::TimePoint placed_, reset_;
-  Clock::TimePoint ticked_;   ///< Time at which a tick was last taken.
-  Clock::TimePoint held_up_;  ///< Last time at which the server was connected, or its process had no processor.
+  Clock::TimePoint requested_;  ///< Time of prepare(), or of the last resume_forces().
+  Clock::TimePoint ticked_;     ///< Time at which a tick was last taken.
+  Clock::TimePoint held_up_;    ///< Last time at which the server was connected, or its process had no processor.
   std::deque<Clock::TimePoint> returns_;  ///< Times of the recoveries within the last minute.
 
   // State of the present connection.

@@ -232,13 +232,37 @@ TEST_F(SupervisionTest, RetriesStallsBeforeTheFirstForcesUnasked) {
   server->set_fault(GateFault::kRunaway);
   run_for(1.0);
   EXPECT_TRUE(tool->view().waits_for_resume) << "a fault that is no stall";
+  const auto stall = [&](ServerState state, int times) {
+    for (int stalls = 0; stalls < times; ++stalls) {
+      ASSERT_TRUE(run_until([&] { return tool->state() == state; }, 5.0)) << stalls;
+      server->set_fault(GateFault::kDeviceSilent);
+      run_for(0.002);
+    }
+  };
   supervise("openhaptics");
-  for (int stalls = 0; stalls < 6; ++stalls) {
-    ASSERT_TRUE(run_until([&] { return tool->state() == ServerState::kLoading; }, 5.0)) << stalls;
-    server->set_fault(GateFault::kDeviceSilent);
-    run_for(0.002);
+  stall(ServerState::kStarting, 6);
+  EXPECT_TRUE(tool->view().waits_for_resume) << "five stalls while the forces are switched on are too many";
+  supervise("openhaptics");
+  stall(ServerState::kLoading, 20);
+  EXPECT_FALSE(tool->view().waits_for_resume) << "a machine that loads is busy";
+  tool->hold_start(true);
+  run_for(31.0);
+  stall(ServerState::kPlacing, 6);
+  EXPECT_TRUE(tool->view().waits_for_resume) << "but not for so long";
+}
+
+TEST_F(SupervisionTest, HeldStartWaitsWithoutATimeout) {
+  for (const char* device : {"virtual:premium", "openhaptics"}) {
+    supervise(device);
+    EXPECT_TRUE(tool->is_loading());
+    tool->hold_start(true);
+    run_for(10.0 * kTimeout_s);
+    EXPECT_EQ(tool->state(), ServerState::kPlacing) << tool->banner();
+    EXPECT_FALSE(tool->is_loading());
+    EXPECT_EQ(server->count(ServerCommand::kStart), 0);
+    tool->hold_start(false);
+    EXPECT_TRUE(run_until([&] { return tool->is_fresh(); }, 5.0)) << tool->banner();
   }
-  EXPECT_TRUE(tool->view().waits_for_resume) << "five stalls are too many";
 }
 
 TEST_F(SupervisionTest, DeviceSilentBeforeFirstForcesWaitsForResume) {

@@ -1,4 +1,4 @@
-#include "attempt/servers/local_server.h"
+#include "attempt/servers/server_hosts.h"
 
 #include <fmt/format.h>
 
