@@ -4,13 +4,16 @@
 #include <algorithm>
 
 #include "attempt/guide/puncture_guide.h"
+#include "attempt/tools/tool_motion.h"
 #include "tasks/fit_to_patient.h"
 
 namespace trocar::trainer {
 namespace {
 
-// Slower than the limits of a hand in attempt/tools/led_pose.h, so that the tool does not cut corners through the body.
-constexpr double kMost_mm_per_s = 50.0, kMost_rad_per_s = 1.2;
+// Slower than the limits of a hand in attempt/tools/tool_motion.h, so that the tool does not cut corners through the
+// body.
+constexpr double kMost_mm_per_s = 0.8 * attempt::kFreeHand.most_mm_per_s;
+constexpr double kMost_rad_per_s = 0.8 * attempt::kFreeHand.most_rad_per_s;
 
 }  // namespace
 

@@ -54,6 +54,7 @@ ScriptPlayer::ScriptPlayer(std::vector<ScriptStep> steps, Stage stage, QObject* 
 
 void ScriptPlayer::start() {
   poll_.start();
+  step_.start();
   timer_.start();
 }
 
@@ -73,6 +74,10 @@ void ScriptPlayer::play_on() {
     return;
   }
   if (*progress == Progress::kAgain) return;
+  if (tells_times_)
+    fmt::print(stderr, "{:7.2f} s  {}:{} {} {}\n", static_cast<double>(step_.nsecsElapsed()) / 1e9, to_std(step.script),
+               step.line, to_std(step.verb), to_std(step.arguments.join(' ')));
+  step_.restart();
   ++at_;
   sent_ = 0;
   step_s_ = 0.0;

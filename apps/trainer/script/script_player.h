@@ -63,7 +63,10 @@ class ScriptPlayer : public QObject {
   Stage stage_;
   std::size_t at_ = 0;
   QTimer timer_;
-  QElapsedTimer poll_;   ///< Time since the last poll.
+  QElapsedTimer poll_;  ///< Time since the last poll.
+  QElapsedTimer step_;  ///< Since the step began.
+  /// TROCAR_SCRIPT_TIMES is set: the time of each step goes to standard error.
+  const bool tells_times_ = qEnvironmentVariableIsSet("TROCAR_SCRIPT_TIMES");
   double step_s_ = 0.0;  ///< See seconds().
   int sent_ = 0;         ///< Events sent in this step.
 };

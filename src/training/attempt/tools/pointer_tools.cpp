@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "attempt/tools/transducer_motion.h"
+#include "attempt/tools/tool_motion.h"
 #include "geometry/vec.h"
 
 namespace trocar::attempt {

@@ -7,7 +7,7 @@
 namespace trocar::attempt {
 
 /// Hands moved by mouse, wheel and keys: each gesture is a small change of the hand's target pose. Contains no time;
-/// led_pose.h limits the speed. Frame P.
+/// LedPose (tool_motion.h) limits the speed. Frame P.
 
 /// The needle's hand. Its state is the entry E, where the needle's axis meets the skin, the direction d, and
 /// the distance of the tip past E. Before the skin (not past E) the entry glides over the skin. In the body the needle

@@ -3,7 +3,7 @@
 #include <limits>
 #include <numbers>
 
-#include "attempt/tools/transducer_motion.h"
+#include "attempt/tools/tool_motion.h"
 
 namespace trocar::attempt {
 namespace {

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <limits>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/random.h"
 #include "motion/testing/sliding_motion.h"
+#include "phantom/phantom.h"
 #include "volume/sampling.h"
 
 namespace trocar::attempt {
 namespace {
 
 const anatomy::VirtualPatient& patient() {
-  static const anatomy::VirtualPatient the_patient = *anatomy::generate_phantom("layers-liver");
+  static const anatomy::VirtualPatient the_patient = *phantom::generate_phantom("layers-liver");
   return the_patient;
 }
 

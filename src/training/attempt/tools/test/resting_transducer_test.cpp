@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "anatomy/phantom/phantom.h"
-#include "attempt/tools/transducer_motion.h"
+#include "attempt/tools/tool_motion.h"
+#include "phantom/phantom.h"
 #include "volume/sampling.h"
 
 namespace trocar::attempt {
@@ -10,7 +10,7 @@ namespace {
 class RestingTransducerTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    auto made = anatomy::generate_phantom("layers-liver");
+    auto made = phantom::generate_phantom("layers-liver");
     ASSERT_TRUE(made.has_value());
     patient = new anatomy::VirtualPatient(*std::move(made));
   }

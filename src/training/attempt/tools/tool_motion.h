@@ -13,6 +13,8 @@ struct SpeedLimits {
   double most_mm_per_s = 60.0;  ///< Speed of the tool's origin. Range 1..1000.
   double most_rad_per_s = 1.5;  ///< Range 0.1..20.
 };
+/// Of a needle away from the skin, and of a transducer: slower than people reach for something. [assumed]
+inline constexpr SpeedLimits kFreeHand{150.0, 3.8};
 
 /// Pose between `from` and `to`: the origin moved by at most `most_mm`, the rotation turned by at most `most_rad` the
 /// shortest way. Poses that are not finite cause no motion.
@@ -34,6 +36,7 @@ class LedPose {
 
   void put(const Pose& X_P) noexcept;                                     ///< Takes effect at once, at rest.
   void lead(const Pose& X_P, const Vec3& v_P, const Vec3& w_P) noexcept;  ///< Ignored if not finite.
+  void limit(const SpeedLimits& limits) noexcept { limits_ = limits; }
   void clamp(bool is_clamped) noexcept { is_clamped_ = is_clamped; }
   void step(double dt_s) noexcept;
 
@@ -84,7 +87,7 @@ class LedTransducer final : public TransducerMotion {
 
  private:
   Pose X_PT_, X_PT_start_;
-  LedPose hand_;
+  LedPose hand_{kFreeHand};
 };
 
 /// Room of a transducer in the patient: orientation of the needle's room; the origin is the grip of a transducer that

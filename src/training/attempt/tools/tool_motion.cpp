@@ -1,4 +1,4 @@
-#include "attempt/tools/transducer_motion.h"
+#include "attempt/tools/tool_motion.h"
 
 #include <algorithm>
 #include <array>
