@@ -311,10 +311,10 @@ void PatientScene::set_transducer(const std::optional<Pose>& X_PT, const Transdu
   if (impl_->tools.set_transducer(X_PT, face)) impl_->has_changed = true;
 }
 
-void PatientScene::set_ultrasound(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
+void PatientScene::set_ultrasound(const PictureView& picture, std::span<const std::uint8_t> alpha,
                                   const std::array<Vec3, 3>& corners_P) {
-  if (picture.pixels.empty()) return hide_ultrasound();
-  TROCAR_CHECK(alpha.empty() || alpha.size() == picture.pixels.size());
+  if (picture.bytes.empty()) return hide_ultrasound();
+  TROCAR_CHECK(alpha.empty() || alpha.size() * picture.channels == picture.bytes.size());
   if (impl_->tools.ultrasound().show_picture(picture, alpha, corners_P)) impl_->has_changed = true;
 }
 

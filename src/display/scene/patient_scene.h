@@ -72,7 +72,7 @@ class PatientScene {
   void set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
   /// An image in 3D; corners of its outline: top left, top right, bottom left. `alpha` has one byte per pixel (0: not
   /// drawn) or is empty (all drawn).
-  void set_ultrasound(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
+  void set_ultrasound(const PictureView& picture, std::span<const std::uint8_t> alpha,
                       const std::array<Vec3, 3>& corners_P);
   void hide_ultrasound();
   void set_mpr(const MprOptions& options);

@@ -52,8 +52,8 @@ bool can_render() noexcept {
   return detail::has_opengl_display();
 }
 
-Result<volume::RgbImage> render_patient(const anatomy::VirtualPatient& patient,
-                                        const std::vector<anatomy::NamedMesh>& meshes, const SceneOptions& options) {
+Result<image::RgbImage> render_patient(const anatomy::VirtualPatient& patient,
+                                       const std::vector<anatomy::NamedMesh>& meshes, const SceneOptions& options) {
   if (std::min(options.columns, options.rows) < kMinPixels || std::max(options.columns, options.rows) > kMaxPixels) {
     return fail_usage(fmt::format("a picture of {} x {} pixels cannot be drawn", options.columns, options.rows), {},
                       fmt::format("choose {}..{}", kMinPixels, kMaxPixels));

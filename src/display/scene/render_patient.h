@@ -9,9 +9,9 @@
 
 #include "anatomy/patient.h"
 #include "core/result.h"
+#include "image/image.h"
 #include "scene/camera.h"
 #include "scene/scene_options.h"
-#include "volume/image.h"
 
 namespace trocar::scene {
 
@@ -30,9 +30,8 @@ bool can_render() noexcept;
 /// A 3D image of the patient's surfaces, rendered off-screen: bone ivory, other structures in the colours of the label
 /// table, the skin and the organs around a target translucent; fat and muscle, which would hide the others, are not
 /// drawn. Error: no X server (run under xvfb-run).
-Result<volume::RgbImage> render_patient(const anatomy::VirtualPatient& patient,
-                                        const std::vector<anatomy::NamedMesh>& meshes,
-                                        const SceneOptions& options = {});
+Result<image::RgbImage> render_patient(const anatomy::VirtualPatient& patient,
+                                       const std::vector<anatomy::NamedMesh>& meshes, const SceneOptions& options = {});
 
 }  // namespace trocar::scene
 

@@ -3,13 +3,13 @@
 namespace trocar::scene {
 namespace {
 
-constexpr volume::Rgb kSkin = {224, 178, 150};
-constexpr volume::Rgb kFlesh = {176, 84, 66};
-constexpr volume::Rgb kBlood = {206, 44, 36};
-constexpr volume::Rgb kBloodBright = {232, 96, 74};
-constexpr volume::Rgb kMarrow = {216, 172, 138};
-constexpr volume::Rgb kBone = {236, 226, 202};
-constexpr volume::Rgb kBoneWhite = {250, 246, 236};
+constexpr image::Rgb kSkin = {224, 178, 150};
+constexpr image::Rgb kFlesh = {176, 84, 66};
+constexpr image::Rgb kBlood = {206, 44, 36};
+constexpr image::Rgb kBloodBright = {232, 96, 74};
+constexpr image::Rgb kMarrow = {216, 172, 138};
+constexpr image::Rgb kBone = {236, 226, 202};
+constexpr image::Rgb kBoneWhite = {250, 246, 236};
 
 // Opacities are assumed, tuned by eye on an abdomen in the portal venous phase.
 constexpr TransferPoint kBoneRamp[] = {

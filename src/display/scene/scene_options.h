@@ -1,17 +1,34 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "geometry/vec.h"
-#include "volume/image.h"
+#include "image/image.h"
 
 namespace trocar::scene {
 
+/// Pixels of a gray or colour image, which has to outlive it.
+struct PictureView {
+  PictureView(const image::GrayImage& gray) noexcept  // NOLINT: both kinds of images are meant
+      : columns(gray.columns), rows(gray.rows), channels(1), bytes(gray.pixels) {}
+  PictureView(const image::RgbImage& colour) noexcept  // NOLINT
+      : columns(colour.columns),
+        rows(colour.rows),
+        channels(3),
+        bytes(colour.pixels.empty() ? nullptr : colour.pixels.front().data(), 3 * colour.pixels.size()) {}
+
+  int columns, rows;
+  std::size_t channels;  ///< 1 or 3 bytes a pixel, row by row from the top left.
+  std::span<const std::uint8_t> bytes;
+};
+
 /// A fingertip on the skin. Frame P, mm.
 struct Fingertip {
-  Vec3 p_P = Vec3::Zero();           ///< Where it touches the skin.
-  Vec3 inward_P = Vec3::UnitY();     ///< Unit, into the body.
-  volume::Rgb color{200, 200, 200};  ///< Of the ring around it: what it feels.
+  Vec3 p_P = Vec3::Zero();          ///< Where it touches the skin.
+  Vec3 inward_P = Vec3::UnitY();    ///< Unit, into the body.
+  image::Rgb color{200, 200, 200};  ///< Of the ring around it: what it feels.
 };
 
 /// Amount of a plan that the views of a case show.
@@ -59,7 +76,7 @@ enum class VolumePreset { kNone, kBone, kSoftTissue, kVessels, kSkinAndBone };
 /// A point of a transfer function, which is linear between points and constant outside.
 struct TransferPoint {
   double hu;
-  volume::Rgb color;
+  image::Rgb color;
   double opacity;  ///< Opacity of a path of 1 mm, 0..1.
 };
 

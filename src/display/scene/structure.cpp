@@ -137,8 +137,8 @@ Aim find_aim(const anatomy::VirtualPatient& patient, const Vec3& target_P) {
 namespace trocar::scene::detail {
 namespace {
 
-constexpr volume::Rgb kSkinColor = {224, 178, 150};
-constexpr volume::Rgb kIvory = {236, 226, 202};
+constexpr image::Rgb kSkinColor = {224, 178, 150};
+constexpr image::Rgb kIvory = {236, 226, 202};
 constexpr double kSkinOpacity = 0.15;
 constexpr double kLungOpacity = 0.16;
 constexpr double kFluidOpacity = 0.3;

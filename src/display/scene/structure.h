@@ -16,7 +16,7 @@ enum class StructureKind { kSkin, kBone, kVessel, kLung, kHollowOrgan, kOrgan, k
 struct StructureInfo {
   std::string name;  ///< Name of the label, or "skin".
   StructureKind kind = StructureKind::kOrgan;
-  volume::Rgb color{200, 200, 200};
+  image::Rgb color{200, 200, 200};
   double opacity = 1.0;          ///< 0 (not drawn) .. 1.
   double default_opacity = 1.0;  ///< Initial opacity.
   bool is_lesion = false;        ///< Lesion of an organ (lesions_as_organs).
@@ -63,7 +63,7 @@ inline constexpr double kOrganAroundTargetOpacity = 0.42;
 
 /// Appearance of a surface.
 struct Appearance {
-  volume::Rgb color;
+  image::Rgb color;
   double opacity = 1.0;   ///< 0..1
   double specular = 0.2;  ///< 0..1
   double ambient = 0.14;  ///< 0..1, ambient coefficient

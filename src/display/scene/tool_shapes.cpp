@@ -13,14 +13,14 @@ namespace {
 
 using detail::Ring;
 
-constexpr volume::Rgb kSteel = {205, 212, 220};
-constexpr volume::Rgb kDarkSteel = {96, 104, 114};
-constexpr volume::Rgb kHubBlue = {46, 134, 171};
-constexpr volume::Rgb kHubYellow = {226, 186, 60};
-constexpr volume::Rgb kHubBlack = {54, 60, 70};
-constexpr volume::Rgb kGunGreen = {44, 150, 110};
-constexpr volume::Rgb kHandleGrey = {120, 130, 142};
-constexpr volume::Rgb kWhite = {232, 236, 240};
+constexpr image::Rgb kSteel = {205, 212, 220};
+constexpr image::Rgb kDarkSteel = {96, 104, 114};
+constexpr image::Rgb kHubBlue = {46, 134, 171};
+constexpr image::Rgb kHubYellow = {226, 186, 60};
+constexpr image::Rgb kHubBlack = {54, 60, 70};
+constexpr image::Rgb kGunGreen = {44, 150, 110};
+constexpr image::Rgb kHandleGrey = {120, 130, 142};
+constexpr image::Rgb kWhite = {232, 236, 240};
 constexpr int kShaftSides = 16;
 
 /// Shape of a needle's tip; lengths in shaft diameters.
@@ -114,12 +114,12 @@ TriangleMesh make_shaft(std::span<const Vec3> line, double diameter_mm, const Ti
 }
 
 void add_turned(std::vector<ShapePart>& parts, const Pose& X_AL, std::initializer_list<Ring> rings,
-                const volume::Rgb& color, double specular = 0.4) {
+                const image::Rgb& color, double specular = 0.4) {
   parts.push_back({detail::make_turned(X_AL, std::vector<Ring>(rings)), color, specular});
 }
 
 void add_box(std::vector<ShapePart>& parts, const Pose& X_AL, const Vec3& middle, const Vec3& half_mm, double corner_mm,
-             const volume::Rgb& color) {
+             const image::Rgb& color) {
   parts.push_back({detail::make_box(X_AL * Pose::translation(middle), half_mm, corner_mm), color, 0.35});
 }
 
@@ -230,10 +230,10 @@ TriangleMesh make_ball(const Vec3& center, double radius_mm) {
 
 namespace {
 
-constexpr volume::Rgb kLensGrey = {92, 100, 112};
-constexpr volume::Rgb kShell = {214, 220, 227};
-constexpr volume::Rgb kHandle = {176, 186, 198};
-constexpr volume::Rgb kMark = {79, 179, 217};
+constexpr image::Rgb kLensGrey = {92, 100, 112};
+constexpr image::Rgb kShell = {214, 220, 227};
+constexpr image::Rgb kHandle = {176, 186, 198};
+constexpr image::Rgb kMark = {79, 179, 217};
 constexpr int kHousingSides = 40;
 constexpr double kShellRim_mm = 4.0;       ///< Of the shell around the outermost elements.
 constexpr double kHalfElevation_mm = 9.0;  ///< Half the lens' height.

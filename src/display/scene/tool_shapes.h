@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/shapes.h"
-#include "volume/image.h"
+#include "image/image.h"
 
 namespace trocar::scene {
 
@@ -24,7 +24,7 @@ NeedleModel needle_model(std::string_view name) noexcept;
 /// A closed part of a tool with its own colour, in the frame of the points it was made from.
 struct ShapePart {
   TriangleMesh mesh;
-  volume::Rgb color{200, 200, 200};
+  image::Rgb color{200, 200, 200};
   double specular = 0.5;  ///< 0..1
 };
 

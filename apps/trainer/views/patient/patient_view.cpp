@@ -148,8 +148,8 @@ void PatientView::set_transducer(const std::optional<Pose>& X_PT, const ultrasou
   impl_->scene->set_transducer(X_PT, face_of(scan));
 }
 
-void PatientView::set_ultrasound(const volume::RgbImage& picture, const std::array<Vec3, 3>& corners_P) {
-  if (!impl_->X_PT || picture.pixels.empty()) return impl_->scene->set_ultrasound(picture, {}, corners_P);
+void PatientView::set_ultrasound(const scene::PictureView& picture, const std::array<Vec3, 3>& corners_P) {
+  if (!impl_->X_PT || picture.bytes.empty()) return impl_->scene->set_ultrasound(picture, {}, corners_P);
   impl_->scene->set_ultrasound(
       picture, impl_->scan_mask.of(picture.columns, picture.rows, corners_P, *impl_->X_PT, impl_->scan), corners_P);
 }

@@ -59,7 +59,7 @@ class PatientView : public QWidget {
   void set_transducer(const std::optional<Pose>& X_PT, const ultrasound::ScanGeometry& scan);
   /// Corners of the image outline in P: top left, top right, bottom left. Pixels outside of the scan of the last
   /// set_transducer are transparent; without a transducer, no pixel is. An empty image hides it.
-  void set_ultrasound(const volume::RgbImage& picture, const std::array<Vec3, 3>& corners_P);
+  void set_ultrasound(const scene::PictureView& picture, const std::array<Vec3, 3>& corners_P);
   void hide_ultrasound();
 
   std::vector<scene::StructureInfo> structures() const;

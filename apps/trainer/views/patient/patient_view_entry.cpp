@@ -122,7 +122,8 @@ class PatientViewEntry final : public View {
     picture_number_ = picture->number;
     has_whole_picture_ = picture->detail == ultrasound::ScanDetail::kFull;
     view_->set_transducer(picture->X_PT, picture->scan);
-    view_->set_ultrasound(picture->colour.pixels.empty() ? ultrasound::to_rgb(picture->gray) : picture->colour,
+    const bool is_gray = picture->colour.pixels.empty();
+    view_->set_ultrasound(is_gray ? scene::PictureView(picture->gray) : scene::PictureView(picture->colour),
                           picture->corners_P);
   }
 

@@ -42,7 +42,7 @@ vtkSmartPointer<vtkPolyData> colored(const CoarsePart& part) {
 
 }  // namespace
 
-void CoarseSurfaces::add(vtkPolyData* data, const volume::Rgb& color, double opacity, bool has_colors) {
+void CoarseSurfaces::add(vtkPolyData* data, const image::Rgb& color, double opacity, bool has_colors) {
   auto mapper = make_mapper(data);
   if (has_colors) {
     mapper->ScalarVisibilityOn();

@@ -11,7 +11,7 @@ namespace trocar::scene::detail {
 /// A surface that is drawn during motion.
 struct CoarsePart {
   vtkSmartPointer<vtkPolyData> data;  ///< With normals.
-  volume::Rgb color;
+  image::Rgb color;
   double opacity = 1.0;
 };
 
@@ -29,7 +29,7 @@ class CoarseSurfaces {
   void draw_last();
 
  private:
-  void add(vtkPolyData* data, const volume::Rgb& color, double opacity, bool has_colors);
+  void add(vtkPolyData* data, const image::Rgb& color, double opacity, bool has_colors);
 
   vtkRenderer& renderer_;
   std::vector<vtkSmartPointer<vtkActor>> actors_;  ///< In drawing order.

@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numbers>
 
 #include "scene/detail/simplify.h"
 
@@ -120,7 +119,7 @@ void apply(const CameraView& view, vtkRenderer& renderer) {
   camera->SetFocalPoint(view.focus_P.data());
   camera->SetPosition(view.eye_P.data());
   camera->SetViewUp(view.up_P.data());
-  camera->SetViewAngle(view.view_angle_rad * 180.0 / std::numbers::pi);
+  camera->SetViewAngle(degrees(view.view_angle_rad));
   renderer.ResetCameraClippingRange();
 }
 
@@ -177,16 +176,19 @@ void PictureQuad::show(const std::array<Vec3, 3>& corners_P) {
   actor_->VisibilityOn();
 }
 
-bool PictureQuad::show_picture(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
+bool PictureQuad::show_picture(const PictureView& picture, std::span<const std::uint8_t> alpha,
                                const std::array<Vec3, 3>& corners_P) {
   const std::span<std::uint8_t> rgba = resize(picture.columns, picture.rows);
   bool is_new = actor_->GetVisibility() == 0;
   for (std::size_t i = 0; i < 3; ++i) is_new |= (corners_P[i] - corners_P_[i]).norm() > kUnseen_mm;
   // Collected without a branch, so that the compiler vectorises it: this runs for every ultrasound image.
   unsigned changes = 0;
-  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-    const volume::Rgb& pixel = picture.pixels[i];
-    const std::array<std::uint8_t, 4> bytes{pixel[0], pixel[1], pixel[2], alpha.empty() ? std::uint8_t{255} : alpha[i]};
+  const std::size_t count = picture.bytes.size() / picture.channels;
+  const std::size_t green = picture.channels == 3 ? 1 : 0, blue = 2 * green;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t* const pixel = picture.bytes.data() + i * picture.channels;
+    const std::array<std::uint8_t, 4> bytes{pixel[0], pixel[green], pixel[blue],
+                                            alpha.empty() ? std::uint8_t{255} : alpha[i]};
     for (std::size_t b = 0; b < bytes.size(); ++b) changes |= static_cast<unsigned>(rgba[4 * i + b] ^ bytes[b]);
     std::copy(bytes.begin(), bytes.end(), rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
   }
@@ -201,13 +203,13 @@ bool PictureQuad::hide() {
   return was_shown;
 }
 
-volume::RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supersampling) {
+image::RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supersampling) {
   const int wide = columns * supersampling;
   const int high = rows * supersampling;
   const int samples = supersampling * supersampling;
   vtkNew<vtkUnsignedCharArray> bytes;
   window.GetPixelData(0, 0, wide - 1, high - 1, 0, bytes);
-  volume::RgbImage image(columns, rows);
+  image::RgbImage image(columns, rows);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       for (int channel = 0; channel < 3; ++channel) {

@@ -11,9 +11,10 @@
 #include <vector>
 
 #include "geometry/shapes.h"
+#include "image/image.h"
 #include "scene/camera.h"
+#include "scene/scene_options.h"
 #include "scene/structure.h"
-#include "volume/image.h"
 
 class vtkPolyDataMapper;
 class vtkRenderWindow;
@@ -57,7 +58,7 @@ class PictureQuad {
   void show(const std::array<Vec3, 3>& corners_P);
   /// Sets the pixels of an image with its alpha (one byte per pixel; empty: all opaque) and shows it. True if it
   /// changed something.
-  bool show_picture(const volume::RgbImage& picture, std::span<const std::uint8_t> alpha,
+  bool show_picture(const PictureView& picture, std::span<const std::uint8_t> alpha,
                     const std::array<Vec3, 3>& corners_P);
   /// Returns true if it was visible.
   bool hide();
@@ -71,6 +72,6 @@ class PictureQuad {
 
 /// The window's pixels, averaged over blocks of `supersampling`^2, top row first. The window has columns*supersampling
 /// x rows*supersampling pixels.
-volume::RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supersampling);
+image::RgbImage read_picture(vtkRenderWindow& window, int columns, int rows, int supersampling);
 
 }  // namespace trocar::scene::detail

@@ -19,10 +19,10 @@ namespace trocar::scene::detail {
 namespace {
 
 // The trainer's colours of path and target (ui_kit/theme.h).
-constexpr volume::Rgb kPathColor = {0x54, 0xd1, 0xc4};
-constexpr volume::Rgb kOtherPathColor = {0xc3, 0xcc, 0xd8};
-constexpr volume::Rgb kTargetColor = {0xff, 0x8a, 0x3d};
-constexpr volume::Rgb kLandmarkColor = {0xf2, 0xd0, 0x6b};
+constexpr image::Rgb kPathColor = {0x54, 0xd1, 0xc4};
+constexpr image::Rgb kOtherPathColor = {0xc3, 0xcc, 0xd8};
+constexpr image::Rgb kTargetColor = {0xff, 0x8a, 0x3d};
+constexpr image::Rgb kLandmarkColor = {0xf2, 0xd0, 0x6b};
 constexpr double kPathRadius_mm = 1.0;
 constexpr double kPathDash_mm = 6.0;
 constexpr double kPathGap_mm = 4.0;
@@ -93,7 +93,7 @@ void GuideLayer::clear(Props& props) {
   props.clear();
 }
 
-void GuideLayer::add_mesh(Props& props, const TriangleMesh& mesh_P, const volume::Rgb& color, double opacity,
+void GuideLayer::add_mesh(Props& props, const TriangleMesh& mesh_P, const image::Rgb& color, double opacity,
                           bool is_lit) {
   auto actor = vtkSmartPointer<vtkActor>::New();
   actor->SetMapper(make_mapper(to_polydata(mesh_P)));
@@ -105,7 +105,7 @@ void GuideLayer::add_mesh(Props& props, const TriangleMesh& mesh_P, const volume
   props.push_back(actor);
 }
 
-void GuideLayer::add_text(const Vec3& p_P, const std::string& text, const volume::Rgb& color) {
+void GuideLayer::add_text(const Vec3& p_P, const std::string& text, const image::Rgb& color) {
   auto label = vtkSmartPointer<vtkTextActor>::New();
   label->SetInput(text.c_str());
   // Next to the mark, and on top of everything, so that names are never partly hidden.

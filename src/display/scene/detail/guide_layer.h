@@ -52,8 +52,8 @@ class GuideLayer {
     Vec3 p_P;
   };
   using Props = std::vector<vtkSmartPointer<vtkProp>>;
-  void add_mesh(Props& props, const TriangleMesh& mesh_P, const volume::Rgb& color, double opacity, bool is_lit);
-  void add_text(const Vec3& p_P, const std::string& text, const volume::Rgb& color);
+  void add_mesh(Props& props, const TriangleMesh& mesh_P, const image::Rgb& color, double opacity, bool is_lit);
+  void add_text(const Vec3& p_P, const std::string& text, const image::Rgb& color);
   void scale_texts();
   void clear(Props& props);
   void show_guidance();

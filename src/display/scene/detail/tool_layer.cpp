@@ -22,13 +22,13 @@ constexpr double kGhostOpacity = 0.4;
 constexpr double kGhostRadius_mm = 1.2;
 constexpr double kGhostHubRadius_mm = 4.0;
 constexpr double kGhostHub_mm = 22.0;
-constexpr volume::Rgb kGhostColor = {150, 205, 255};
+constexpr image::Rgb kGhostColor = {150, 205, 255};
 constexpr double kStyletRadius_mm = 0.8;  // drawn thicker than in reality for visibility, like the needle
-constexpr volume::Rgb kStyletColor = {236, 240, 246};
+constexpr image::Rgb kStyletColor = {236, 240, 246};
 constexpr double kCoreRadius_mm = 1.6;  // around the needle
-constexpr volume::Rgb kCoreColor = {255, 138, 61};
+constexpr image::Rgb kCoreColor = {255, 138, 61};
 constexpr double kThrowRadius_mm = 0.5, kNotchRadius_mm = 1.0, kThrowDash_mm = 1.5;
-constexpr volume::Rgb kThrowColor = {236, 240, 246};
+constexpr image::Rgb kThrowColor = {236, 240, 246};
 /// A smaller relative change of the minimum thickness does not rebuild the needle.
 constexpr double kThicknessStep = 0.15;
 
@@ -141,7 +141,7 @@ bool ToolLayer::set_shot(const std::optional<Segment>& stylet_P, const std::opti
   core_P_ = core_P;
   shot_->SetVisibility(stylet_P || core_P);
   std::vector<ShapePart> parts;
-  const auto add = [&](const std::optional<Segment>& piece_P, double radius_mm, const volume::Rgb& color) {
+  const auto add = [&](const std::optional<Segment>& piece_P, double radius_mm, const image::Rgb& color) {
     if (!piece_P || piece_P->length_mm() < kUnseen_mm) return;
     const Vec3 ends_P[2] = {piece_P->a, piece_P->b};
     parts.push_back({make_tube(ends_P, radius_mm), color});
@@ -213,8 +213,8 @@ constexpr double kLean = 1.2;  ///< Of the finger's axis, against the skin's nor
 constexpr double kAround_mm = 11.0, kFingerRing_mm = 1.3;
 constexpr double kMarkRadius_mm = 3.0;
 constexpr double kSamePlace_mm = 0.05;
-constexpr volume::Rgb kFingerColor = {0xd9, 0xb3, 0x9a};
-constexpr volume::Rgb kMarkColor = {0x9a, 0x4d, 0xff};  ///< Of a surgical skin marker.
+constexpr image::Rgb kFingerColor = {0xd9, 0xb3, 0x9a};
+constexpr image::Rgb kMarkColor = {0x9a, 0x4d, 0xff};  ///< Of a surgical skin marker.
 
 bool are_same_touch(const std::optional<Fingertip>& a, const std::optional<Fingertip>& b) {
   if (!a || !b) return !a && !b;

@@ -29,17 +29,17 @@ class PatientSceneTest : public ::testing::Test {
     scene->set_camera(CameraPreset::kAnterior);
     scene->finish_loading();
   }
-  volume::RgbImage draw(const Detail& detail = DetailPolicy::full()) {
+  image::RgbImage draw(const Detail& detail = DetailPolicy::full()) {
     EXPECT_TRUE(scene->render(detail));
     return picture();
   }
-  volume::RgbImage picture() const {
+  image::RgbImage picture() const {
     std::vector<std::uint32_t> pixels(static_cast<std::size_t>(kSize) * kSize);
     scene->copy_picture(pixels);
-    volume::RgbImage image(kSize, kSize);
+    image::RgbImage image(kSize, kSize);
     std::transform(pixels.begin(), pixels.end(), image.pixels.begin(), [](std::uint32_t p) {
-      return volume::Rgb{static_cast<std::uint8_t>(p >> 16), static_cast<std::uint8_t>(p >> 8),
-                         static_cast<std::uint8_t>(p)};
+      return image::Rgb{static_cast<std::uint8_t>(p >> 16), static_cast<std::uint8_t>(p >> 8),
+                        static_cast<std::uint8_t>(p)};
     });
     return image;
   }
@@ -47,22 +47,22 @@ class PatientSceneTest : public ::testing::Test {
   std::shared_ptr<const anatomy::VirtualPatient> patient;
 };
 
-bool is_bright(const volume::Rgb& c) {
+bool is_bright(const image::Rgb& c) {
   return c[0] > 120 && c[1] > 120 && c[2] > 120;
 }
-bool is_teal(const volume::Rgb& c) {
+bool is_teal(const image::Rgb& c) {
   return c[1] > 150 && c[2] > 140 && c[0] < 130;
 }
-bool is_orange(const volume::Rgb& c) {
+bool is_orange(const image::Rgb& c) {
   return c[0] > 130 && c[0] > c[1] + 50 && c[1] > c[2] + 10 && c[1] > 60;
 }
-bool is_magenta(const volume::Rgb& c) {
+bool is_magenta(const image::Rgb& c) {
   return c[0] > 200 && c[2] > 200 && c[1] < 60;
 }
 
 TEST_F(PatientSceneTest, AnteriorViewIsOrientedRightAtEveryDetail) {
   for (const Detail& detail : {DetailPolicy::full(), DetailPolicy::moving(0), DetailPolicy::moving(2)}) {
-    const volume::RgbImage image = draw(detail);
+    const image::RgbImage image = draw(detail);
     EXPECT_LT(middle_of(image, is_reddish).x(), 60.0);
     EXPECT_NEAR(middle_of(image, is_reddish).y(), 80.0, 4.0);
     EXPECT_LT(middle_of(image, is_greenish).y(), 60.0);
@@ -154,7 +154,7 @@ TEST_F(PatientSceneTest, DrawsAShotUntilItIsCleared) {
   scene->apply_preset(StructurePreset::kBones);
   const int before = count_of(draw(), is_orange);
   scene->set_shot(Segment{{-60, 0, -50}, {0, 0, -50}}, Segment{{10, 0, -50}, {60, 0, -50}});
-  const volume::RgbImage image = draw();
+  const image::RgbImage image = draw();
   EXPECT_GT(count_of(image, is_orange), before + 20);
   EXPECT_GT(count_of(image, is_bright), 20);
   scene->set_shot({}, {});
@@ -163,8 +163,8 @@ TEST_F(PatientSceneTest, DrawsAShotUntilItIsCleared) {
 
 TEST_F(PatientSceneTest, DrawsTheThrowDashedAndThickerAtTheNotch) {
   scene->apply_preset(StructurePreset::kBones);
-  const volume::RgbImage before = draw();
-  const auto changed = [&](const volume::RgbImage& image) {
+  const image::RgbImage before = draw();
+  const auto changed = [&](const image::RgbImage& image) {
     int count = 0;
     for (std::size_t n = 0; n < image.pixels.size(); ++n) count += image.pixels[n] == before.pixels[n] ? 0 : 1;
     return count;
@@ -188,7 +188,7 @@ TEST_F(PatientSceneTest, ThinNeedleStaysVisibleFromAfar) {
 
 TEST_F(PatientSceneTest, DrawsTheUltrasoundImageInItsPlaneWithinTheFan) {
   scene->apply_preset(StructurePreset::kBones);
-  const volume::RgbImage picture(10, 10, {255, 0, 255});
+  const image::RgbImage picture(10, 10, {255, 0, 255});
   std::vector<std::uint8_t> alpha(100, 255);
   const std::array<Vec3, 3> corners_P = {Vec3(-50, -110, 50), Vec3(50, -110, 50), Vec3(-50, -110, -50)};
   scene->set_ultrasound(picture, alpha, corners_P);
@@ -196,7 +196,7 @@ TEST_F(PatientSceneTest, DrawsTheUltrasoundImageInItsPlaneWithinTheFan) {
   EXPECT_GT(whole, 3000);
   std::fill(alpha.begin(), alpha.begin() + 50, std::uint8_t{0});  // the upper half
   scene->set_ultrasound(picture, alpha, corners_P);
-  const volume::RgbImage half = draw();
+  const image::RgbImage half = draw();
   EXPECT_NEAR(count_of(half, is_magenta), 0.5 * whole, 0.08 * whole);
   EXPECT_GT(middle_of(half, is_magenta).y(), 90.0);
   scene->hide_ultrasound();
@@ -213,15 +213,15 @@ TEST_F(PatientSceneTest, GuidanceIsShownAndHidden) {
 TEST_F(PatientSceneTest, TargetGuidanceShowsOnlyTargetAndEntryZone) {
   scene->apply_preset(StructurePreset::kBones);  // there are none: nothing hides the marks
   scene->set_path(Segment{{60, -95, -50}, {20, 0, -50}}, 15.0);
-  const volume::RgbImage guided = draw();
+  const image::RgbImage guided = draw();
   scene->set_guidance(Guidance::kTarget);
-  const volume::RgbImage assisted = draw();
+  const image::RgbImage assisted = draw();
   EXPECT_GT(count_of(guided, is_orange), 5);
   EXPECT_NEAR(count_of(assisted, is_orange), count_of(guided, is_orange), 3);
   EXPECT_GT(count_of(assisted, is_teal), 20);
   EXPECT_LT(count_of(assisted, is_teal), count_of(guided, is_teal) - 20);
   scene->set_guidance(Guidance::kNone);
-  const volume::RgbImage exam = draw();
+  const image::RgbImage exam = draw();
   EXPECT_EQ(count_of(exam, is_orange) + count_of(exam, is_teal), 0);
 }
 
@@ -266,19 +266,19 @@ TEST_F(PatientSceneTest, CentresTheEntryZone) {
 
 TEST_F(PatientSceneTest, ShowsLandmarksOnRequest) {
   scene->apply_preset(StructurePreset::kBones);
-  const volume::RgbImage without = draw();
+  const image::RgbImage without = draw();
   scene->set_landmarks_visible(true);
-  const volume::RgbImage with = draw();
+  const image::RgbImage with = draw();
   EXPECT_NE(with.pixels, without.pixels);
 }
 
 TEST_F(PatientSceneTest, ShowsTheLandmarksSetLast) {
   scene->apply_preset(StructurePreset::kBones);
   scene->set_landmarks_visible(true);
-  const volume::RgbImage own = draw();
+  const image::RgbImage own = draw();
   scene->set_landmarks({{"xiphoid process", {0, -100, 60}}, {"umbilicus", {0, -100, 0}}});
   EXPECT_TRUE(scene->has_changed());
-  const volume::RgbImage others = draw();
+  const image::RgbImage others = draw();
   EXPECT_NE(others.pixels, own.pixels);
   scene->set_landmarks(patient->landmarks);
   EXPECT_EQ(draw().pixels, own.pixels);
@@ -302,15 +302,15 @@ TEST_F(PatientSceneTest, BreakAbortsTheFrame) {
 }
 
 TEST_F(PatientSceneTest, MirroredImageIsTheFlippedImage) {
-  const volume::RgbImage image = draw();
+  const image::RgbImage image = draw();
   StereoOptions options;
   options.is_mirrored_left_right = true;
   scene->set_stereo(options);
-  const volume::RgbImage flipped = draw();
+  const image::RgbImage flipped = draw();
   for (int column = 0; column < kSize; ++column) EXPECT_EQ(image.at(column, 80), flipped.at(kSize - 1 - column, 80));
   options.is_mirrored_up_down = true;
   scene->set_stereo(options);
-  const volume::RgbImage turned = draw();
+  const image::RgbImage turned = draw();
   for (int row = 0; row < kSize; ++row) EXPECT_EQ(image.at(100, row), turned.at(kSize - 1 - 100, kSize - 1 - row));
 }
 
@@ -351,11 +351,11 @@ TEST_F(PatientSceneTest, AnaglyphSplitsTheEyesIntoRedAndCyan) {
   options.eye_angle_deg = 6.0;
   scene->set_stereo(options);
   // A tinted pixel is one that only one eye's picture lights: along the outline of the skin.
-  const auto is_tinted = [](const volume::Rgb& c) { return std::abs(c[0] - c[1]) > 60; };
-  const volume::RgbImage anaglyph = draw();
+  const auto is_tinted = [](const image::Rgb& c) { return std::abs(c[0] - c[1]) > 60; };
+  const image::RgbImage anaglyph = draw();
   EXPECT_GT(count_of(anaglyph, is_tinted), 20);
   scene->set_stereo({});
-  const volume::RgbImage mono = draw();
+  const image::RgbImage mono = draw();
   EXPECT_EQ(count_of(mono, is_tinted), 0);
 }
 
@@ -363,7 +363,7 @@ TEST_F(PatientSceneTest, SideBySideShowsTheOrganTwice) {
   StereoOptions options;
   options.mode = StereoMode::kSideBySide;
   scene->set_stereo(options);
-  const volume::RgbImage image = draw();
+  const image::RgbImage image = draw();
   int left = 0, right = 0;
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
@@ -389,10 +389,10 @@ TEST_F(PatientSceneTest, EvenScreenRowsShowTheLeftEyeAtAnyOffset) {
   const auto left_lead_px = [&](int first_row) {
     scene->set_stereo(options);
     scene->set_first_row(first_row);
-    volume::RgbImage of_eye[2] = {draw(), {}};
+    image::RgbImage of_eye[2] = {draw(), {}};
     of_eye[1] = of_eye[0];
     for (int row = 0; row < kSize; ++row) {
-      volume::RgbImage& other = of_eye[(first_row + row + 1) % 2];
+      image::RgbImage& other = of_eye[(first_row + row + 1) % 2];
       for (int column = 0; column < kSize; ++column) other.at(column, row) = {0, 0, 0};
     }
     return middle_of(of_eye[0], is_bright).x() - middle_of(of_eye[1], is_bright).x();

@@ -7,8 +7,8 @@
 
 namespace trocar::scene {
 
-inline constexpr volume::Rgb kRed = {220, 30, 30};
-inline constexpr volume::Rgb kGreen = {30, 200, 60};
+inline constexpr image::Rgb kRed = {220, 30, 30};
+inline constexpr image::Rgb kGreen = {30, 200, 60};
 
 /// A closed sphere of latitude and longitude triangles, facing outward.
 inline TriangleMesh ball(const Vec3& center_P, double radius_mm) {
@@ -47,19 +47,19 @@ inline Scene two_organs() {
   return scene;
 }
 
-inline bool is_reddish(const volume::Rgb& c) {
+inline bool is_reddish(const image::Rgb& c) {
   return c[0] > 70 && c[0] > 2 * c[1] && c[0] > 2 * c[2];
 }
-inline bool is_greenish(const volume::Rgb& c) {
+inline bool is_greenish(const image::Rgb& c) {
   return c[1] > 60 && 2 * c[1] > 3 * c[0] && 2 * c[1] > 3 * c[2];
 }
 
-inline bool is_bluish(const volume::Rgb& c) {
+inline bool is_bluish(const image::Rgb& c) {
   return c[2] > 90 && c[2] > c[1] && 2 * c[2] > 5 * c[0];
 }
 
 /// Mean position of the pixels that pass, in pixels; NaN if none passes.
-inline Eigen::Vector2d middle_of(const volume::RgbImage& image, bool (*passes)(const volume::Rgb&)) {
+inline Eigen::Vector2d middle_of(const image::RgbImage& image, bool (*passes)(const image::Rgb&)) {
   Eigen::Vector2d sum(0, 0);
   int count = 0;
   for (int row = 0; row < image.rows; ++row) {
@@ -72,9 +72,9 @@ inline Eigen::Vector2d middle_of(const volume::RgbImage& image, bool (*passes)(c
   return sum / count;
 }
 
-inline int count_of(const volume::RgbImage& image, bool (*passes)(const volume::Rgb&)) {
+inline int count_of(const image::RgbImage& image, bool (*passes)(const image::Rgb&)) {
   int count = 0;
-  for (const volume::Rgb& pixel : image.pixels) count += passes(pixel) ? 1 : 0;
+  for (const image::Rgb& pixel : image.pixels) count += passes(pixel) ? 1 : 0;
   return count;
 }
 
