@@ -189,10 +189,9 @@ void ResultsControl::practise_as(std::optional<results::Person> person) {
 
 void ResultsControl::record_begin(const storage::SessionInfo& info) {
   task_ = info.task;
-  attempt_id_ = info.attempt_id;
   recorded_task_.clear();
   feedback_.show_comparison({});
-  if (!person_) return;
+  if (info.person_id.empty()) return;
   enqueue([info](const database::DatabaseUrl& url) -> Result<Found> {
     TROCAR_TRY(results::Repository repository, results::Repository::open(url));
     TROCAR_TRY(const learning::Curriculum known, curriculum());
@@ -203,9 +202,9 @@ void ResultsControl::record_begin(const storage::SessionInfo& info) {
   });
 }
 
-void ResultsControl::record_end(const std::filesystem::path& session) {
-  if (!person_) return;
-  enqueue([session, id = attempt_id_](const database::DatabaseUrl& url) -> Result<Found> {
+void ResultsControl::record_end(const std::filesystem::path& session, const storage::SessionInfo& begun) {
+  if (begun.person_id.empty()) return;
+  enqueue([session, id = begun.attempt_id](const database::DatabaseUrl& url) -> Result<Found> {
     TROCAR_TRY(results::Repository repository, results::Repository::open(url));
     std::error_code error;
     if (!std::filesystem::exists(session, error)) {

@@ -45,7 +45,7 @@ class ResultsControl : public QObject {
   void refresh();
   /// Writes that an attempt has begun, and its result when it has ended; one that recorded nothing is forgotten.
   void record_begin(const storage::SessionInfo& info);
-  void record_end(const std::filesystem::path& session);
+  void record_end(const std::filesystem::path& session, const storage::SessionInfo& begun);
   void poll();
   bool has_work() const noexcept { return working_.has_work() || !waiting_.empty(); }
 
@@ -92,8 +92,8 @@ class ResultsControl : public QObject {
   bool is_held_ = false;
   bool has_warned_ = false;  ///< Of how the database is kept.
   Curves curves_;
-  std::string task_, attempt_id_;  ///< Of the attempt that has begun.
-  std::string recorded_task_;      ///< Of the attempt that the feedback compares; empty: none.
+  std::string task_;           ///< Of the attempt that has begun.
+  std::string recorded_task_;  ///< Of the attempt that the feedback compares; empty: none.
   BackgroundJob<Found> working_;
   std::deque<Work> waiting_;
 };

@@ -19,7 +19,7 @@
 #include "pages/case_page.h"
 #include "pages/start_page.h"
 #include "pages/work_page.h"
-#include "panels/device_test_dialog.h"
+#include "panels/devices/device_test_dialog.h"
 #include "panels/status_strip.h"
 #include "shell/keys_dialog.h"
 #include "shell/trainer_flow.h"

@@ -41,25 +41,13 @@ attempt::AttemptOptions TrainerFlow::attempt_options() const {
   options.is_guided = !is_exam();
   if (!choice_.is_tutorial) options.person_id = results_->person_id();
   options.attempt_id = signing::make_id();
+  options.operator_name = "trainee";
+  options.patient_source = open_->choice.patient_source;
+  options.patient_seed = open_->choice.patient_seed;
   // Finding the target is a part of the task, and the start of the plan would reveal it.
   options.X_PN_start = open_->neutral.X_PN;
   options.X_PT_start = open_->neutral.X_PT;
   return options;
-}
-
-storage::SessionInfo TrainerFlow::begun_attempt(const attempt::AttemptOptions& options) const {
-  storage::SessionInfo begun;
-  begun.attempt_id = options.attempt_id;
-  begun.person_id = options.person_id;
-  begun.task = open_->the_case.task.name;
-  begun.patient_name = open_->the_case.patient->name;
-  begun.patient_source = open_->choice.patient_source;
-  begun.patient_hash = open_->the_case.patient->content_hash;
-  begun.patient_seed = open_->choice.patient_seed;
-  begun.level = options.level;
-  begun.operator_name = options.trainee;
-  begun.program_version = kVersion;
-  return begun;
 }
 
 void TrainerFlow::begin_attempt() {
@@ -68,7 +56,7 @@ void TrainerFlow::begin_attempt() {
   if (const Status kept = journal_.begin({case_choice(choice_), options.session}); !kept)
     return window_.show_banner(sentence_of(kept.error()), BannerKind::kError);
   Attempting attempting;
-  attempting.begun = begun_attempt(options);
+  attempting.begun = attempt::identify(open_->the_case, options);
   attempting.examinee = {results_->person_id(), results_->person_name(), results_->has_person_given_pin()};
   if (!choice_.is_tutorial) results_->record_begin(attempting.begun);
   window_.work().show_puncture();
@@ -115,7 +103,7 @@ void TrainerFlow::end(Attempting attempting, Result<attempt::RunResult> result) 
   enter(Briefed());
   window_.show_banner({});
   journal_.clear();
-  if (!choice_.is_tutorial) results_->record_end(session);
+  if (!choice_.is_tutorial) results_->record_end(session, attempting.begun);
   if (!result) {
     window_.show_banner(sentence_of(result.error()) + tr(" Press Begin to try again, or Back for the start page."),
                         BannerKind::kError);
@@ -131,9 +119,7 @@ void TrainerFlow::end(Attempting attempting, Result<attempt::RunResult> result) 
 }
 
 exams::ExamEnd TrainerFlow::exam_end(const Attempting& attempting, const attempt::RunResult& result) const {
-  exams::ExamEnd end{attempting.begun, result.outcome, result.ticks_hash, attempting.examinee, {}};
-  end.info.patient_source = io::absolute_source(attempting.begun.patient_source);  // as the session has it
-  return end;
+  return {attempting.begun, result.outcome, result.ticks_hash, attempting.examinee, {}};
 }
 
 }  // namespace trocar::trainer

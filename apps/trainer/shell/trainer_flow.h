@@ -119,7 +119,6 @@ class TrainerFlow : public QObject {
   bool can_record();
   Result<std::string> check_recording() const;
   attempt::AttemptOptions attempt_options() const;
-  storage::SessionInfo begun_attempt(const attempt::AttemptOptions& options) const;
   void poll(Attempting& attempting);
   void end(Attempting attempting, Result<attempt::RunResult> result);
   exams::ExamEnd exam_end(const Attempting& attempting, const attempt::RunResult& result) const;

@@ -16,7 +16,6 @@ NeedleView needle_view(const cases::Case& the_case, const telemetry::TickSample&
   view.time_s = sample.time_s;
   view.X_PN = telemetry::felt_needle(sample);
   view.shaft_P = needle_shaft(sample, shape, the_case.needle.length_mm);
-  view.X_PN_device = telemetry::device_pose(sample);
   view.X_PN_goal = X_PN_goal;
   view.resistance_n = telemetry::axial_resistance_n(sample);
   view.lag_mm = (X_PN_goal.p() - sample.tip_mm).dot(view.X_PN.R().col(2));

@@ -47,11 +47,6 @@ void AttemptExchange::clamp(Tool tool, bool is_clamped) {
   (tool == Tool::kNeedle ? requests_.needle_clamped : requests_.probe_clamped) = is_clamped;
 }
 
-void AttemptExchange::begin() {
-  const std::lock_guard lock(mutex_);
-  requests_.begins = true;
-}
-
 void AttemptExchange::note_xray(const tasks::XrayUse& use) {
   const std::lock_guard lock(mutex_);
   requests_.xray.push_back(use);

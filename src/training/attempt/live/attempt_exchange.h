@@ -38,7 +38,7 @@ struct AttemptRequests {
   std::vector<tasks::XrayUse> xray;           ///< In order.
   std::vector<tasks::ActionRequest> actions;  ///< In order.
   std::optional<std::size_t> repeated_phase;
-  bool begins = false, finishes = false, has_drawn = false;
+  bool finishes = false, has_drawn = false;
 };
 
 /// Data that the loop publishes after each poll.
@@ -74,7 +74,6 @@ class AttemptExchange {
   void set_goal(Tool tool, const Pose& X_PTool, const Vec3& v_P = Vec3::Zero(), const Vec3& w_P = Vec3::Zero());
   /// Clamped: the tool stays in place and ignores set_goal.
   void clamp(Tool tool, bool is_clamped);
-  void begin();  ///< See AttemptOptions::waits_for_begin.
   void stop_forces();
   void resume_forces();
   /// Use of the fluoroscope, which the recording keeps; its time is set by the attempt.

@@ -9,18 +9,19 @@
 #include "attempt/record/session_case.h"
 #include "cases/scene_request.h"
 #include "telemetry/tick_sample.h"
+#include "volume/sampling.h"
 
 namespace trocar::attempt {
 namespace {
 
-link::LoadScene scene_of(const AttemptCase& the_case, const std::string& force_model, std::uint64_t seed,
+link::LoadScene scene_of(const AttemptCase& the_case, const std::string& force_model, const AttemptIdentity& identity,
                          const char* tool) {
   cases::SceneChoice choice;
   choice.tool = tool;
   choice.force_model = force_model;
   choice.patient_source = the_case.server_source;
-  choice.patient_seed = the_case.patient_seed;
-  choice.seed = seed;
+  choice.patient_seed = identity.patient_seed;
+  choice.seed = identity.seed;
   return cases::scene_request(*the_case.the_case, choice);
 }
 
@@ -39,8 +40,7 @@ AttemptLoop::AttemptLoop(AttemptCase the_case, LoopOptions options, AttemptOpera
       performer_(std::move(operators.needle)),
       led_transducer_(options_.X_PT_start),
       own_motion_(std::move(operators.transducer)),
-      transducer_motion_(own_motion_ ? own_motion_.get() : &led_transducer_),
-      begins_(!options_.waits_for_begin) {
+      transducer_motion_(own_motion_ ? own_motion_.get() : &led_transducer_) {
   auto steering = std::make_unique<NeedleSteering>();
   steering_ = steering.get();
   if (performer_.the_operator != nullptr) {
@@ -57,9 +57,9 @@ AttemptLoop::AttemptLoop(AttemptCase the_case, LoopOptions options, AttemptOpera
 
 void AttemptLoop::prepare() {
   if (!performer_.parameters.empty()) needle_->set_parameters(as_command(performer_.parameters.front()));
-  needle_->prepare({scene_of(case_, performer_.force_model, options_.seed, "needle"), hand_target(command_, 0.0)});
+  needle_->prepare({scene_of(case_, performer_.force_model, options_, "needle"), hand_target(command_, 0.0)});
   if (!transducer_) return;
-  PreparationRequest request{scene_of(case_, performer_.force_model, options_.seed, "probe"), {}};
+  PreparationRequest request{scene_of(case_, performer_.force_model, options_, "probe"), {}};
   request.place.X_PN = transducer_motion_->X_PT_start();
   request.scene.X_PW = transducer_room(request.scene.X_PW, transducer_motion_->X_PT_room());
   transducer_->prepare(request);
@@ -96,14 +96,18 @@ Status AttemptLoop::step() {
   TROCAR_TRY_STATUS(step_needle());
   if (transducer_) TROCAR_TRY_STATUS(step_transducer());
   if (finishes_) return {};
-  if (transducer_) poll_server(*transducer_);
+  if (transducer_) {
+    needle_->hold_start(!has_ever_been_on_ && transducer_->is_loading());
+    transducer_->hold_start(!has_ever_been_on_ && needle_->is_loading());
+    poll_server(*transducer_);
+  }
   poll_server(*needle_);
   TROCAR_TRY_STATUS(check_servers());
   const bool is_transducer_settled =
       !transducer_ || transducer_->is_fresh() || transducer_->state() == ServerState::kFailed;
   if (needle_->is_fresh() && is_transducer_settled) {
     has_ever_been_on_ = true;
-    if (begins_ && !record_) TROCAR_TRY_STATUS(start_recording());
+    if (!record_) TROCAR_TRY_STATUS(start_recording());
   }
   return {};
 }
@@ -111,7 +115,6 @@ Status AttemptLoop::step() {
 Status AttemptLoop::take_requests() {
   AttemptRequests requests = exchange_.take_requests();
   lead(requests);
-  if (requests.begins) begins_ = true;
   if (requests.stopped) stop_or_resume(*requests.stopped);
   if (requests.performer) steering_->perform(std::move(requests.performer));
   for (const link::SetParameters& parameters : requests.parameters) {
@@ -147,8 +150,17 @@ Status AttemptLoop::act(const tasks::ActionRequest& request) {
   return {};
 }
 
+/// So far from the skin that a hand that moves it fast is slow before it touches.
+bool AttemptLoop::is_needle_free() const {
+  constexpr double kNear_mm = 10.0;
+  if (!last_needle_) return false;
+
+  return volume::sample_linear(case_.the_case->patient->skin_distance_mm, last_needle_->rest_tip_mm) > kNear_mm;
+}
+
 void AttemptLoop::lead(const AttemptRequests& requests) {
   LedPose& needle = steering_->hand();
+  needle.limit(is_needle_free() ? kFreeHand : SpeedLimits{});
   LedPose& transducer = led_transducer_.hand();
   if (requests.needle_clamped) needle.clamp(*requests.needle_clamped);
   if (requests.probe_clamped) transducer.clamp(*requests.probe_clamped);
@@ -197,16 +209,14 @@ Status AttemptLoop::start_recording() {
   const link::ClientView& client = needle_->client();
   const double wanted_hz = client.status.loop.wanted_hz;
   if (wanted_hz > 0.0) performer_.rate_hz = wanted_hz;
-  const RecordOptions options{options_.session,   options_.operator_name, case_.patient_source,
-                              case_.patient_seed, options_.seed,          transducer_ ? case_.plane : std::nullopt,
-                              options_.person_id, options_.attempt_id,    options_.longest_s};
+  const RecordOptions options{options_.identity(), options_.session, transducer_ ? case_.plane : std::nullopt,
+                              options_.longest_s};
   AttemptFacts facts;
   facts.device =
       fmt::format("{}, {}, through {}", client.welcome.device.name, client.welcome.device.title, client.welcome.server);
   facts.rate_hz = performer_.rate_hz;
   facts.force_model = performer_.force_model;
   facts.device_preset = preset_of_device(client.welcome.device.name);
-  facts.level = options_.level;
   if (const SceneParameters* newest = needle_->scenes().newest()) facts.parameters = *newest;
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(*case_.the_case, options, facts));
   record_.emplace(std::move(record));

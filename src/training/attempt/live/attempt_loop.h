@@ -11,8 +11,9 @@
 #include "attempt/live/attempt_exchange.h"
 #include "attempt/live/attempt_view.h"
 #include "attempt/live/live_operator.h"
+#include "attempt/record/attempt_record.h"
 #include "attempt/servers/haptic_servers.h"
-#include "attempt/tools/transducer_motion.h"
+#include "attempt/tools/tool_motion.h"
 #include "cases/prepare_case.h"
 #include "metrics/harm_watch.h"
 #include "scoring/pain.h"
@@ -23,9 +24,7 @@ namespace trocar::attempt {
 /// Case of an attempt, for the loop.
 struct AttemptCase {
   std::shared_ptr<const cases::Case> the_case;
-  std::string patient_source;  ///< As given by the user; recorded.
-  std::string server_source;   ///< Source for a server of this machine.
-  std::uint64_t patient_seed = 1;
+  std::string server_source;                 ///< Source for a server of this machine.
   std::optional<metrics::ImagePlane> plane;  ///< Of the transducer; empty: there is none.
 };
 
@@ -38,18 +37,12 @@ struct AttemptOperators {
   std::unique_ptr<TransducerMotion> transducer;  ///< Null: the client leads it.
 };
 
-struct LoopOptions {
+struct LoopOptions : AttemptIdentity {
   std::filesystem::path session;  ///< Written here; must not exist. Its folder must.
-  std::string operator_name;      ///< Recorded.
-  std::string level;              ///< Recorded.
-  std::string person_id;          ///< Recorded.
-  std::string attempt_id;         ///< Recorded; empty: a new one.
-  std::uint64_t seed = 1;
-  Pose X_PN_start;  ///< Start pose of a needle that the client leads.
-  Pose X_PT_start;  ///< Start pose of a transducer that the client leads.
-  bool waits_for_begin = false;
-  bool is_guided = false;  ///< Hints are given.
-  bool has_view = true;    ///< false: only phase, progress and time are published.
+  Pose X_PN_start;                ///< Start pose of a needle that the client leads.
+  Pose X_PT_start;                ///< Start pose of a transducer that the client leads.
+  bool is_guided = false;         ///< Hints are given.
+  bool has_view = true;           ///< false: only phase, progress and time are published.
   /// Limit of the duration: every tick stays in memory until the attempt is scored. [assumed]
   double longest_s = 900.0;
   bool scores_unsaved = true;  ///< true: a session that cannot be written is still scored; false: it is an error.
@@ -85,6 +78,7 @@ class AttemptLoop {
   Status step();
   Status take_requests();
   Status act(const tasks::ActionRequest& request);
+  bool is_needle_free() const;
   void lead(const AttemptRequests& requests);
   void stop_or_resume(bool is_stopped);
   void poll_server(ServerSupervisor& server);
@@ -149,7 +143,7 @@ class AttemptLoop {
   double pressed_mm_ = 0.0;  ///< Largest of this insertion, see note_place.
   bool was_needle_on_ = false, was_transducer_on_ = false;
   bool is_transducer_given_up_ = false;  ///< The transducer was given up, with a note.
-  bool begins_ = false, finishes_ = false, is_stopped_ = false;
+  bool finishes_ = false, is_stopped_ = false;
   bool has_ever_been_on_ = false, has_ended_ = false;
   std::optional<double> contact_s_;
   double session_s_ = 0.0, since_contact_s_ = 0.0;  ///< Active time; kept for the view after the record is closed.

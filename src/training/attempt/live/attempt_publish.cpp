@@ -60,7 +60,7 @@ motion::PatientMotion AttemptLoop::motion_now() {
   const KnownScenes& scenes = needle_->scenes();
   if (const SceneParameters* newest = scenes.newest(); newest != nullptr && scenes.newest_number() != drive_scene_) {
     haptics::HapticOptions options;
-    haptics::DeviceCapability device;
+    stylus::DeviceCapability device;
     if (haptics::restore_options(newest->options, options, device)) drive_ = options.motion;
     drive_scene_ = scenes.newest_number();
   }
@@ -74,7 +74,7 @@ NeedleView AttemptLoop::needle_now() const {
     view = needle_view(*case_.the_case, *last_needle_, needle_shape_,
                        is_led ? command_.X_PN : telemetry::device_pose(*last_needle_));
   } else {
-    view.X_PN = view.X_PN_device = view.X_PN_goal = command_.X_PN;
+    view.X_PN = view.X_PN_goal = command_.X_PN;
   }
   view.is_clamped = steering_->hand().is_clamped();
   return view;

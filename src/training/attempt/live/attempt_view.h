@@ -37,9 +37,7 @@ struct NeedleView {
   bool is_known = false;      ///< A tick has arrived.
   double time_s = 0.0;        ///< Session time; 0 before recording.
   Pose X_PN;                  ///< Felt pose: tip and axis of the virtual needle, roll of the device.
-  std::vector<Vec3> shaft_P;  ///< Hub to tip, see needle_shaft.h.
-  Pose X_PN_device;           ///< Needle pose of the device: ahead of the virtual needle by the deformation of the
-                              ///< tissue.
+  std::vector<Vec3> shaft_P;  ///< Hub to tip, see needle_shaft (attempt/guide/needle_view.h).
   Pose X_PN_goal;             ///< Target pose of the hand.
   double resistance_n = 0.0;  ///< Resistance along the needle; positive pushes it out.
   double lag_mm = 0.0;        ///< Distance of the virtual tip behind the hand's, along the axis.

@@ -32,15 +32,13 @@ Pose before_entry(const Segment& path_P) {
 
 LoopOptions loop_options(const cases::OpenCase& open_case, const AttemptOptions& options) {
   LoopOptions loop;
+  loop.identity() = options;
+  if (loop.operator_name.empty()) loop.operator_name = "trainee";
+  loop.patient_source = open_case.choice.patient_source;
+  loop.patient_seed = open_case.choice.patient_seed;
   loop.session = options.session;
-  loop.operator_name = options.trainee;
-  loop.level = options.level;
-  loop.person_id = options.person_id;
-  loop.attempt_id = options.attempt_id;
-  loop.seed = options.seed;
   loop.X_PN_start = options.X_PN_start.value_or(before_entry(open_case.the_case.plan.line_P));
   loop.X_PT_start = options.X_PT_start.value_or(open_case.X_PT_start);
-  loop.waits_for_begin = options.waits_for_begin;
   loop.is_guided = options.is_guided;
   loop.is_transducer_optional = follows_targets(options.device_probe);
   loop.free_bytes = options.free_bytes;
@@ -49,9 +47,7 @@ LoopOptions loop_options(const cases::OpenCase& open_case, const AttemptOptions&
 
 AttemptCase attempt_case(std::shared_ptr<const cases::OpenCase> open_case) {
   AttemptCase of;
-  of.patient_source = open_case->choice.patient_source;
   of.server_source = io::absolute_source(open_case->server_source);
-  of.patient_seed = open_case->choice.patient_seed;
   of.plane = open_case->plane();
   const cases::Case* const the_case = &open_case->the_case;
   of.the_case = {std::move(open_case), the_case};

@@ -15,22 +15,15 @@
 
 namespace trocar::attempt {
 
-struct AttemptOptions {
-  std::filesystem::path session;    ///< Written here; must not exist. Its folder must.
-  std::string trainee = "trainee";  ///< Recorded as the operator's name.
+struct AttemptOptions : AttemptIdentity {
+  std::filesystem::path session;  ///< Written here; must not exist. Its folder must.
   /// In the form of trocar-hapticd --device, see DeviceControl.
   std::string device_needle = "virtual:premium";
   std::string device_probe = "virtual:premium";
-  double rate_hz = 1000.0;  ///< 250..4000.
-  int priority = 80;        ///< Priority of the servers' real-time threads; 0: ordinary scheduling.
-  std::string force_model;  ///< Empty: the case's.
-  std::uint64_t seed = 1;
-  std::string level;       ///< Level of help, recorded: "guided", "assisted", "exam".
-  std::string person_id;   ///< Who practises, recorded; empty: nobody was chosen.
-  std::string attempt_id;  ///< Recorded; empty: a new one.
-  bool is_guided = false;  ///< Hints are given.
-  /// true: recording starts at begin(), for example after a briefing; false: when all is ready.
-  bool waits_for_begin = false;
+  double rate_hz = 1000.0;         ///< 250..4000.
+  int priority = 80;               ///< Priority of the servers' real-time threads; 0: ordinary scheduling.
+  std::string force_model;         ///< Empty: the case's.
+  bool is_guided = false;          ///< Hints are given.
   bool has_probe = true;           ///< false: only the needle's server is used.
   std::optional<Pose> X_PN_start;  ///< Empty: 20 mm before the entry on the planned path.
   std::optional<Pose> X_PT_start;  ///< Empty: the case's.
@@ -38,7 +31,6 @@ struct AttemptOptions {
   std::chrono::milliseconds timeout{8000};
   /// Called with the session's folder once a second during recording; tests replace it.
   std::function<std::optional<std::uintmax_t>(const std::filesystem::path&)> free_bytes = find_free_bytes;
-  std::shared_ptr<Clock> clock = std::make_shared<SteadyClock>();  ///< Clock of supervision and recording.
 };
 
 /// A running attempt on a thread of its own: the window's client of AttemptLoop. Starts the haptic servers. No member
@@ -58,7 +50,6 @@ class LiveAttempt : private AttemptExchange {
 
   // See AttemptExchange.
   using AttemptExchange::act;
-  using AttemptExchange::begin;
   using AttemptExchange::clamp;
   using AttemptExchange::finish;
   using AttemptExchange::frame_drawn;

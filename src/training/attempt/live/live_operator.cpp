@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "haptics/coupling/virtual_stylus.h"
+#include "stylus/virtual_stylus.h"
 #include "tasks/operator.h"
 #include "telemetry/tick_sample.h"
 
@@ -34,7 +34,7 @@ link::HandTarget hand_target(const tasks::HandCommand& command, double server_ti
   target.damping_ns_per_mm = spring.damping_ns_per_mm;
   target.mass_kg = spring.mass_kg;
   target.holds_tip = true;
-  const haptics::StylusHold guiding = haptics::make_guiding_hand(0.0);  // the server knows the tip's position
+  const stylus::StylusHold guiding = stylus::make_guiding_hand(0.0);  // the server knows the tip's position
   target.turning_nmm_per_rad = guiding.turning_nmm_per_rad;
   target.turning_damping_nmms_per_rad = guiding.turning_damping_nmms_per_rad;
   target.is_rigid = command.is_rigid;

@@ -7,7 +7,7 @@
 
 #include "attempt/live/performer.h"
 #include "attempt/record/attempt_record.h"
-#include "attempt/tools/transducer_motion.h"
+#include "attempt/tools/tool_motion.h"
 #include "link/client/haptic_client.h"
 #include "tasks/operator.h"
 
@@ -69,7 +69,7 @@ class LiveOperator {
   bool has_new_servers_ = false, is_placed_anew_ = false;
 };
 
-/// Converts a command to a target for a server's hand: the in-process hand (tasks/hand.h), which holds the tip.
+/// Converts a command to a target for a server's hand: the in-process hand (tasks/operator.h), which holds the tip.
 /// `server_time_s`: server time for which the target is meant.
 link::HandTarget hand_target(const tasks::HandCommand& command, double server_time_s) noexcept;
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "attempt/live/attempt_loop.h"
-#include "attempt/servers/local_server.h"
-#include "attempt/tools/transducer_motion.h"
+#include "attempt/servers/server_hosts.h"
+#include "attempt/tools/tool_motion.h"
 #include "core/interruption.h"
 #include "io/patient/patient_folder.h"
 #include "link/endpoint.h"
@@ -55,20 +55,13 @@ Status take_rate(const ServerSupervisor& needle, Performer& performer) {
 }
 
 AttemptCase attempt_case(const cases::Case& the_case, const RunOptions& options) {
-  return {std::make_shared<const cases::Case>(the_case),
-          options.patient_source,
-          io::absolute_source(options.patient_source),
-          options.patient_seed,
-          {}};
+  return {std::make_shared<const cases::Case>(the_case), io::absolute_source(options.patient_source), {}};
 }
 
 LoopOptions loop_options(const RunOptions& options) {
   LoopOptions loop;
+  loop.identity() = options;
   loop.session = options.session;
-  loop.operator_name = options.operator_name;
-  loop.seed = options.seed;
-  loop.person_id = options.person_id;
-  loop.attempt_id = options.attempt_id;
   loop.has_view = false;
   loop.longest_s = kLongestAttempt_s;
   loop.scores_unsaved = false;

@@ -14,23 +14,23 @@
 #include "core/files/unfinished_output.h"
 #include "core/interruption.h"
 #include "core/log.h"
-#include "haptics/coupling/device_preset.h"
-#include "haptics/coupling/virtual_stylus.h"
 #include "haptics/scene_options.h"
 #include "haptics/tick.h"
+#include "stylus/device_preset.h"
+#include "stylus/virtual_stylus.h"
 #include "tasks/operator.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
 namespace {
 
-Result<haptics::DevicePreset> find_device(const RunOptions& options) {
+Result<stylus::DevicePreset> find_device(const RunOptions& options) {
   TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
-  return haptics::load_device_preset(data / "devices.toml", options.device);
+  return stylus::load_device_preset(data / "devices.toml", options.device);
 }
 
 /// One step of the device with the operator's hand and the force of the last tick.
-void move_device(haptics::VirtualDeviceState& device, double mass_kg, const tasks::HandCommand& command,
+void move_device(stylus::VirtualDeviceState& device, double mass_kg, const tasks::HandCommand& command,
                  const Vec3& force_P, const haptics::HapticScene& scene, double dt_s) noexcept {
   if (command.is_rigid) {
     device = {command.X_PN, command.v_P};
@@ -38,14 +38,14 @@ void move_device(haptics::VirtualDeviceState& device, double mass_kg, const task
   }
   constexpr tasks::HandParams kHand;
   const tasks::HandSpring spring = tasks::hand_spring(kHand, command);
-  const haptics::HandHold hold{spring.anchor_P,
-                               spring.anchor_velocity_P,
-                               spring.stiffness_n_per_mm,
-                               spring.damping_ns_per_mm,
-                               spring.mass_kg,
-                               tasks::follow_rotation(kHand, device.X_PN.R(), command.X_PN.R(), dt_s)};
-  const haptics::VirtualDeviceParams params{mass_kg, scene.device.stylus_weight_n};
-  haptics::step_device(device, params, hold, force_P, scene.gravity_P, dt_s);
+  const stylus::HandHold hold{spring.anchor_P,
+                              spring.anchor_velocity_P,
+                              spring.stiffness_n_per_mm,
+                              spring.damping_ns_per_mm,
+                              spring.mass_kg,
+                              tasks::follow_rotation(kHand, device.X_PN.R(), command.X_PN.R(), dt_s)};
+  const stylus::VirtualDeviceParams params{mass_kg, scene.device.stylus_weight_n};
+  stylus::step_device(device, params, hold, force_P, scene.gravity_P, dt_s);
 }
 
 /// The scenes of an attempt: one, or in a replay one per change of parameters.
@@ -57,7 +57,7 @@ class SceneSchedule {
     SceneParameters parameters;
   };
   static Result<SceneSchedule> make(const cases::Case& the_case, const Performer& performer, const RunOptions& options,
-                                    const haptics::DevicePreset& device);
+                                    const stylus::DevicePreset& device);
 
   const Entry& first() const noexcept { return entries_.front(); }
   /// The scene of a tick; ticks must be requested in order.
@@ -68,13 +68,13 @@ class SceneSchedule {
 
  private:
   Status add(const cases::Case& the_case, const storage::SessionParameters& parameters, haptics::HapticOptions options,
-             haptics::DeviceCapability device);
+             stylus::DeviceCapability device);
   std::vector<Entry> entries_;  ///< Not empty, sorted by tick.
   std::size_t now_ = 0;
 };
 
 Result<SceneSchedule> SceneSchedule::make(const cases::Case& the_case, const Performer& performer,
-                                          const RunOptions& options, const haptics::DevicePreset& device) {
+                                          const RunOptions& options, const stylus::DevicePreset& device) {
   haptics::HapticOptions haptics;
   haptics.seed = options.seed;
   haptics.motion = options.motion;
@@ -91,7 +91,7 @@ Result<SceneSchedule> SceneSchedule::make(const cases::Case& the_case, const Per
 }
 
 Status SceneSchedule::add(const cases::Case& the_case, const storage::SessionParameters& parameters,
-                          haptics::HapticOptions options, haptics::DeviceCapability device) {
+                          haptics::HapticOptions options, stylus::DeviceCapability device) {
   TROCAR_TRY_STATUS(haptics::restore_options(parameters.options, options, device));
   TROCAR_TRY(const anatomy::TissueTable tissues,
              anatomy::parse_tissue_table(parameters.tissue_table_toml, "the parameters in force"));
@@ -106,8 +106,7 @@ Status SceneSchedule::add(const cases::Case& the_case, const storage::SessionPar
 
 RecordOptions record_options(const RunOptions& options, const Performer& performer) {
   const auto plane = performer.replayed != nullptr ? performer.replayed->info.plane : std::nullopt;
-  return {options.session, options.operator_name, options.patient_source, options.patient_seed, options.seed,
-          plane,           options.person_id,     options.attempt_id};
+  return {options.identity(), options.session, plane};
 }
 
 /// When a tick is, and where its tool: regular, or as recorded by the session that is replayed.
@@ -175,7 +174,7 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
   RecordedTicks recorded(performer);
   const std::size_t most_ticks = recorded.most_ticks();
   const SceneSchedule::Entry* before = nullptr;
-  haptics::VirtualDeviceState device;
+  stylus::VirtualDeviceState device;
   haptics::HapticState state;
   tasks::OperatorView view;
   constexpr double kShapeEvery_s = 0.01;  // as a server
@@ -234,7 +233,7 @@ Result<RunResult> run_session(const cases::Case& the_case, const RunOptions& giv
   TROCAR_TRY_STATUS(check_run(given));
   TROCAR_TRY(const Performer performer, make_performer(the_case, given));
   const RunOptions options = options_of(performer, given);
-  TROCAR_TRY(const haptics::DevicePreset device, find_device(options));
+  TROCAR_TRY(const stylus::DevicePreset device, find_device(options));
   TROCAR_TRY(SceneSchedule scenes, SceneSchedule::make(the_case, performer, options, device));
 
   const AttemptFacts facts{fmt::format("{}, simulated: {}", device.name, device.title), performer.rate_hz,

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "attempt/record/attempt_record.h"
 #include "attempt/record/score_session.h"
 #include "attempt/record/session_case.h"
 #include "cases/prepare_case.h"
@@ -13,19 +14,16 @@
 
 namespace trocar::attempt {
 
-/// Operator, settings and output file of an attempt.
-struct RunOptions {
-  std::string operator_name =
-      "expert";             ///< expert | novice | novice:SHARE | constant-velocity:MM_PER_S | replay:SESSION
+/// Operator, settings and output file of an attempt. Its operator: expert | novice | novice:SHARE |
+/// constant-velocity:MM_PER_S | replay:SESSION.
+struct RunOptions : AttemptIdentity {
+  RunOptions() { operator_name = "expert"; }
+
   std::string force_model;  ///< insertion | proxy | combined; empty: the task's, or that of the replayed session.
   std::string device = "premium";  ///< Name in data/devices.toml; its limits and coupling are simulated.
   double rate_hz = 1000.0;         ///< 250..4000. A replay uses its session's rate.
-  std::uint64_t seed = 1;          ///< Seed of operator, friction and plan.
   motion::MotionDrive motion;      ///< Of a patient with a motion model, in session time. A replay uses its session's.
-  std::string patient_source;      ///< As given by the user: a folder, or an embedded patient's name.
-  std::uint64_t patient_seed = 1;
-  std::filesystem::path session;      ///< Written here; must not exist.
-  std::string person_id, attempt_id;  ///< Recorded; see storage::SessionInfo.
+  std::filesystem::path session;   ///< Written here; must not exist.
   // Replay only. It uses seeds, rate and device of its session; the values above are ignored.
   std::shared_ptr<const storage::Session> replayed;  ///< Session of the operator's name, if it is already loaded.
   ReplayChanges replay_changes;

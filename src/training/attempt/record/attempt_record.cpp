@@ -18,32 +18,38 @@
 #include "xray/tools/tool_shape.h"
 
 namespace trocar::attempt {
+
+storage::SessionInfo identify(const cases::Case& the_case, const AttemptIdentity& identity) {
+  storage::SessionInfo info;
+  info.program_version = kVersion;
+  info.attempt_id = identity.attempt_id.empty() ? signing::make_id() : identity.attempt_id;
+  info.person_id = identity.person_id;
+  info.operator_name = identity.operator_name;
+  info.level = identity.level;
+  info.task = the_case.task.name;
+  info.task_toml = the_case.task_toml;
+  info.needle = the_case.needle.name;
+  info.patient_name = the_case.patient->name;
+  info.patient_source = io::absolute_source(identity.patient_source);
+  info.patient_hash = the_case.patient->content_hash;
+  info.motion_hash = anatomy::motion_hash(*the_case.patient);
+  info.patient_seed = identity.patient_seed;
+  info.seed = identity.seed;
+  return info;
+}
+
 namespace {
 
 constexpr double kMostReserved = 4e6;  // ticks: a server tells its rate
 
 storage::SessionInfo describe(const cases::Case& the_case, const RecordOptions& options, const AttemptFacts& facts) {
-  storage::SessionInfo info;
-  info.program_version = kVersion;
+  storage::SessionInfo info = identify(the_case, options);
   info.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
-  info.task = the_case.task.name;
-  info.task_toml = the_case.task_toml;
-  info.patient_name = the_case.patient->name;
-  info.patient_source = io::absolute_source(options.patient_source);
-  info.patient_hash = the_case.patient->content_hash;
-  info.motion_hash = anatomy::motion_hash(*the_case.patient);
-  info.patient_seed = options.patient_seed;
-  info.operator_name = options.operator_name;
   info.force_model = facts.force_model;
   info.force_version = haptics::kForceVersion;
-  info.seed = options.seed;
-  info.person_id = options.person_id;
-  info.attempt_id = options.attempt_id.empty() ? signing::make_id() : options.attempt_id;
   info.rate_hz = facts.rate_hz;
-  info.needle = the_case.needle.name;
   info.device = facts.device;
   info.device_preset = facts.device_preset;
-  info.level = facts.level;
   const std::string& table = facts.parameters.tissue_table_toml;
   info.tissue_table_toml = table.empty() ? the_case.tissues.to_toml() : table;
   info.plan_P = {the_case.task.name + " plan", the_case.plan.line_P};

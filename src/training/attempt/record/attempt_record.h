@@ -15,6 +15,23 @@
 
 namespace trocar::attempt {
 
+/// Which attempt it is: given once, where it is begun, and carried whole to the session and the results.
+struct AttemptIdentity {
+  std::string attempt_id;      ///< Empty: a new one.
+  std::string person_id;       ///< Who practises; empty: nobody was chosen. See storage::SessionInfo.
+  std::string operator_name;   ///< "trainee", or a scripted operator: "expert" …
+  std::string level;           ///< Of help, in a window: "guided", "assisted", "exam".
+  std::string patient_source;  ///< As given by the user: a folder, or an embedded patient's name.
+  std::uint64_t patient_seed = 1;
+  std::uint64_t seed = 1;  ///< Of operator, friction and plan.
+
+  const AttemptIdentity& identity() const noexcept { return *this; }
+  AttemptIdentity& identity() noexcept { return *this; }
+};
+
+/// The fields of a session that tell which attempt of which case it is.
+storage::SessionInfo identify(const cases::Case& the_case, const AttemptIdentity& identity);
+
 /// Description of how an attempt was made, in addition to case and options.
 struct AttemptFacts {
   std::string device;  ///< Description.
@@ -22,19 +39,12 @@ struct AttemptFacts {
   std::string force_model;
   std::string device_preset;   ///< Name in data/devices.toml; empty: not listed there.
   SceneParameters parameters;  ///< Parameters at the begin, as far as known; without a table: the case's table.
-  std::string level = {};      ///< See SessionInfo.
 };
 
 /// File of a recorded attempt, and the options that are recorded.
-struct RecordOptions {
-  std::filesystem::path session;  ///< Written here; must not exist.
-  std::string operator_name;
-  std::string patient_source;  ///< As given by the user: a folder, or an embedded patient's name.
-  std::uint64_t patient_seed = 1;
-  std::uint64_t seed = 1;
+struct RecordOptions : AttemptIdentity {
+  std::filesystem::path session = {};             ///< Written here; must not exist.
   std::optional<metrics::ImagePlane> plane = {};  ///< Of the transducer; empty: none.
-  std::string person_id = {};                     ///< Who practises; see storage::SessionInfo.
-  std::string attempt_id = {};                    ///< Empty: a new one.
   /// Address space for the ticks of this time is reserved: growing copies all of them, which interrupts a live loop.
   double longest_s = 30.0;
 };

@@ -41,7 +41,7 @@ class AttemptReplay {
   const telemetry::TickSample& at(double time_s) const noexcept;
   /// Where the patient was at that tick.
   motion::PatientMotion motion_at(double time_s) const noexcept { return motion_.at(at(time_s)); }
-  /// See needle_shaft.h; straight in a session of an older program.
+  /// See needle_shaft (attempt/guide/needle_view.h); straight in a session of an older program.
   std::vector<Vec3> shaft_at(double time_s) const;
   /// X_PT, interpolated between the recorded samples; constant in a gap of more than kTransducerGap_s. Empty: the
   /// session has no transducer samples.

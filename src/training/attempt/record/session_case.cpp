@@ -55,7 +55,7 @@ Result<std::vector<storage::SessionParameters>> replay_parameters(const storage:
       TROCAR_TRY_STATUS(anatomy::apply_override(table, assignment));
     if (!changes.overrides.empty()) parameters.tissue_table_toml = table.to_toml();
     haptics::HapticOptions options;
-    haptics::DeviceCapability device;
+    stylus::DeviceCapability device;
     TROCAR_TRY_STATUS(haptics::restore_options(parameters.options, options, device));
   }
   return all;
@@ -66,7 +66,7 @@ Status check_motion(const storage::Session& session, const anatomy::VirtualPatie
   if (session.info.motion_hash.empty()) return {};
   for (const storage::SessionParameters& parameters : session.parameters) {
     haptics::HapticOptions options;
-    haptics::DeviceCapability device;
+    stylus::DeviceCapability device;
     TROCAR_TRY_STATUS(haptics::restore_options(parameters.options, options, device));
     TROCAR_TRY_STATUS(motion::check(options.motion));
   }
@@ -116,7 +116,7 @@ Result<cases::Case> restore_case(std::shared_ptr<const anatomy::VirtualPatient> 
 
 link::SetParameters as_command(const storage::SessionParameters& parameters) {
   haptics::HapticOptions options;
-  haptics::DeviceCapability device;  // belongs to the server
+  stylus::DeviceCapability device;  // belongs to the server
   TROCAR_CHECK(haptics::restore_options(parameters.options, options, device).has_value());
   const auto has = [&](std::string_view name) {
     return std::ranges::any_of(parameters.options, [&](const std::string& option) { return option.starts_with(name); });

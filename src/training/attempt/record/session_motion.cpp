@@ -10,7 +10,7 @@ SessionMotion::SessionMotion(const storage::Session& session, const anatomy::Vir
     : model_(session.info.motion_hash.empty() ? nullptr : patient.motion.get()) {
   for (const storage::SessionParameters& parameters : session.parameters) {
     haptics::HapticOptions options;
-    haptics::DeviceCapability device;
+    stylus::DeviceCapability device;
     if (haptics::restore_options(parameters.options, options, device))
       drives_.emplace_back(parameters.time_s, options.motion);
   }

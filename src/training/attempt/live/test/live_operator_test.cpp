@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
+#include "phantom/phantom.h"
 
 namespace trocar::attempt {
 namespace {
@@ -29,7 +29,7 @@ class Witness final : public tasks::Operator {
 class LiveOperatorTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    auto patient = anatomy::generate_phantom("layers-liver");
+    auto patient = phantom::generate_phantom("layers-liver");
     auto tables = cases::load_tables({});
     ASSERT_TRUE(patient.has_value() && tables.has_value());
     the_case_ = *std::move(tables);

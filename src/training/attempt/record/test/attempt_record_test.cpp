@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "anatomy/phantom/phantom.h"
 #include "attempt/live/attempt_view.h"
 #include "attempt/record/session_case.h"
 #include "core/files/folders.h"
 #include "haptics/force_version.h"
+#include "phantom/phantom.h"
 #include "xray/tools/tool_shape.h"
 
 namespace trocar::attempt {
@@ -18,7 +18,7 @@ using enum tasks::ActionKind;
 class GunRecordTest : public ::testing::Test {
  protected:
   void begin(bool is_biopsy, bool is_coaxial) {
-    static const auto patient = anatomy::generate_phantom("layers-liver");
+    static const auto patient = phantom::generate_phantom("layers-liver");
     auto tables = cases::load_tables({});
     ASSERT_TRUE(patient.has_value() && tables.has_value());
     the_case_ = *std::move(tables);
