@@ -1,6 +1,6 @@
-#include "bench_arguments.h"
+#include "cli/bench_arguments.h"
 
-#include "patient_option.h"
+#include "cli/patient_option.h"
 
 namespace trocar::cli {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "action.h"
 #include "bench/harness.h"
+#include "cli/action.h"
 #include "io/patient/patient_folder.h"
 
 namespace trocar::cli {

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <memory>
 
-#include "bench_arguments.h"
-#include "commands.h"
+#include "cli/bench_arguments.h"
+#include "cli/commands.h"
 #include "core/files/file_system.h"
 
 namespace trocar::cli {

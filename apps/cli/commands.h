@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "action.h"
-#include "output.h"
+#include "cli/action.h"
+#include "cli/output.h"
 
 namespace trocar::cli {
 

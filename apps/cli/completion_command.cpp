@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <map>
 
-#include "anatomy/phantom/phantom.h"
-#include "commands.h"
-#include "haptics/coupling/device_preset.h"
+#include "cli/commands.h"
+#include "phantom/phantom.h"
+#include "stylus/device_preset.h"
 #include "tasks/task.h"
 #include "ultrasound/probe/probe_view.h"
 #include "ultrasound/probe/transducer.h"
@@ -29,15 +29,15 @@ Words names_of(const Things& things, Name name) {
 
 Result<Values> known_values() {
   Values values;
-  values["--patient"] = values["PATIENT"] = names_of(anatomy::embedded_patients(), &anatomy::PhantomInfo::name);
+  values["--patient"] = values["PATIENT"] = names_of(phantom::embedded_patients(), &phantom::PhantomInfo::name);
   values["--operator"] = {"expert", "novice", "novice:", "constant-velocity:", "replay:"};
   values["--force-model"] = {"insertion", "proxy", "combined"};
   TROCAR_TRY(const auto tasks_folder, find_data("tasks"));
   TROCAR_TRY(const auto tasks, tasks::load_tasks(tasks_folder));
   values["--task"] = names_of(tasks, &tasks::Task::name);
   TROCAR_TRY(const auto devices_file, find_data("devices.toml"));
-  TROCAR_TRY(const auto devices, haptics::load_device_presets(devices_file));
-  values["--device"] = names_of(devices, &haptics::DevicePreset::name);
+  TROCAR_TRY(const auto devices, stylus::load_device_presets(devices_file));
+  values["--device"] = names_of(devices, &stylus::DevicePreset::name);
   TROCAR_TRY(const auto views_file, find_data("views.toml"));
   TROCAR_TRY(const auto views, ultrasound::load_probe_views(views_file));
   values["--view"] = names_of(views, &ultrasound::ProbeView::name);

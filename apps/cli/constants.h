@@ -1,10 +1,7 @@
 #pragma once
 
-#include <numbers>
-
 namespace trocar::cli {
 
-inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 inline constexpr double kMm2PerCm2 = 100.0;
 inline constexpr double kMm3PerMl = 1000.0;
 

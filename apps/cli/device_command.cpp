@@ -1,12 +1,11 @@
 // trocar device list.
 #include <fmt/format.h>
 
-#include "commands.h"
+#include "cli/commands.h"
+#include "cli/constants.h"
+#include "cli/json_parts.h"
 #include "config/json.h"
-#include "constants.h"
-#include "haptics/closed_loop/rotation.h"
-#include "haptics/coupling/device_preset.h"
-#include "json_parts.h"
+#include "stylus/device_preset.h"
 
 namespace trocar::cli {
 namespace {
@@ -16,8 +15,8 @@ config::Json optional_json(const std::optional<double>& value) {
   return value ? config::Json(*value) : config::Json(nullptr);
 }
 
-config::Json preset_json(const haptics::DevicePreset& preset) {
-  const haptics::DeviceCapability& capability = preset.capability;
+config::Json preset_json(const stylus::DevicePreset& preset) {
+  const stylus::DeviceCapability& capability = preset.capability;
   return {{"name", preset.name},
           {"title", preset.title},
           {"sensed_dof", preset.sensed_dof},
@@ -39,14 +38,14 @@ config::Json preset_json(const haptics::DevicePreset& preset) {
           {"motion_scale", preset.motion_scale},
           {"clutch_button", preset.clutch_button},
           {"base_mm", vector_json(preset.X_WD.p())},
-          {"base_turn_deg", vector_json(haptics::rotation_vector(preset.X_WD.R()) * kDegPerRad)},
+          {"base_turn_deg", vector_json(rotation_vector(preset.X_WD.R()) * kDegPerRad)},
           {"stylus_weight_n", capability.stylus_weight_n},
           {"coupling_stiffness_n_per_mm", preset.coupling.stiffness_n_per_mm},
           {"coupling_damping_ns_per_mm", preset.coupling.damping_ns_per_mm}};
 }
 
-void print_preset(const haptics::DevicePreset& preset) {
-  const haptics::DeviceCapability& capability = preset.capability;
+void print_preset(const stylus::DevicePreset& preset) {
+  const stylus::DeviceCapability& capability = preset.capability;
   const std::string torque = preset.has_torque() ? fmt::format("{:.0f} N mm", capability.peak_torque_nmm) : "none";
   const std::string force = preset.has_force() ? fmt::format("{:.1f} N", capability.peak_force_n) : "shown";
   fmt::print("{:<10} {:>8} {:>9} {:>5.1f} N/mm {:>7.4f} mm {:>5.2f} N/mm  {}\n", preset.name, force, torque,
@@ -56,15 +55,15 @@ void print_preset(const haptics::DevicePreset& preset) {
 
 Status list_devices(bool is_json) {
   TROCAR_TRY(const auto file, find_data("devices.toml"));
-  TROCAR_TRY(const auto presets, haptics::load_device_presets(file));
+  TROCAR_TRY(const auto presets, stylus::load_device_presets(file));
   if (is_json) {
     config::Json list = config::Json::array();
-    for (const haptics::DevicePreset& preset : presets) list.push_back(preset_json(preset));
+    for (const stylus::DevicePreset& preset : presets) list.push_back(preset_json(preset));
     print_json({{"devices", list}});
     return {};
   }
   fmt::print("{:<10} {:>8} {:>9} {:>10} {:>10} {:>10}\n", "name", "force", "torque", "stiffness", "count", "coupling");
-  for (const haptics::DevicePreset& preset : presets) print_preset(preset);
+  for (const stylus::DevicePreset& preset : presets) print_preset(preset);
   return {};
 }
 

@@ -1,4 +1,4 @@
-#include "json_parts.h"
+#include "cli/json_parts.h"
 
 namespace trocar::cli {
 

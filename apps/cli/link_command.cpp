@@ -1,7 +1,7 @@
 // trocar link keygen.
 #include <fmt/format.h>
 
-#include "commands.h"
+#include "cli/commands.h"
 #include "config/json.h"
 #include "link/endpoint.h"
 

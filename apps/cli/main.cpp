@@ -1,7 +1,7 @@
 #include <optional>
 #include <string>
 
-#include "commands.h"
+#include "cli/commands.h"
 #include "core/interruption.h"
 #include "core/log.h"
 #include "core/version.h"

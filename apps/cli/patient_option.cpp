@@ -1,4 +1,4 @@
-#include "patient_option.h"
+#include "cli/patient_option.h"
 
 #include "io/patient/patient_cache.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "action.h"
+#include "cli/action.h"
 #include "io/patient/patient_folder.h"
 
 namespace trocar::cli {

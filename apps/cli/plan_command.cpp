@@ -4,13 +4,13 @@
 #include <filesystem>
 
 #include "cases/prepare_case.h"
-#include "commands.h"
+#include "cli/commands.h"
+#include "cli/constants.h"
+#include "cli/json_parts.h"
+#include "cli/patient_option.h"
 #include "config/json.h"
-#include "constants.h"
 #include "io/markups_file.h"
 #include "io/patient/patient_cache.h"
-#include "json_parts.h"
-#include "patient_option.h"
 #include "tasks/fit_to_patient.h"
 #include "tasks/plan.h"
 

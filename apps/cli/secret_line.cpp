@@ -1,4 +1,4 @@
-#include "secret_line.h"
+#include "cli/secret_line.h"
 
 #include <poll.h>
 #include <termios.h>

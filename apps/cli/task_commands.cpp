@@ -1,7 +1,7 @@
 // trocar task list.
 #include <fmt/format.h>
 
-#include "commands.h"
+#include "cli/commands.h"
 #include "config/json.h"
 #include "tasks/task.h"
 
