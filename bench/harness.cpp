@@ -6,9 +6,9 @@
 #include <fstream>
 #include <thread>
 
-#include "anatomy/phantom/phantom.h"
 #include "config/json.h"
 #include "core/version.h"
+#include "phantom/phantom.h"
 
 namespace trocar::bench {
 namespace {
@@ -64,7 +64,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 Result<std::shared_ptr<const anatomy::VirtualPatient>> patient_of(const Options& options) {
   if (options.patient) return options.patient;
-  TROCAR_TRY(anatomy::VirtualPatient generated, anatomy::generate_phantom("abdomen", 1, {}, options.progress));
+  TROCAR_TRY(anatomy::VirtualPatient generated, phantom::generate_phantom("abdomen", 1, {}, options.progress));
   return std::make_shared<const anatomy::VirtualPatient>(std::move(generated));
 }
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "bench/harness.h"
-#include "bench_arguments.h"
+#include "cli/bench_arguments.h"
+#include "cli/output.h"
 #include "config/json.h"
 #include "core/interruption.h"
 #include "core/log.h"
 #include "io/patient/patient_cache.h"
-#include "output.h"
 #include "program_end.h"
 
 namespace trocar::bench {
