@@ -48,7 +48,7 @@ endfunction()
 
 # The preset `quick` checks only what reads files of others and talks to devices and clients, and their tests: compiling with
 # sanitizers takes about twice as long.
-set(TROCAR_SANITIZED all CACHE STRING "Modules under the preset's sanitizers: all or quick (trocar_quick_modules)")
+set(TROCAR_SANITIZED all CACHE STRING "Modules under the preset's sanitizers: all or quick (the trait sanitized in src/modules.txt)")
 function(trocar_leave_unchecked target)
   target_compile_options(${target} PRIVATE -fno-sanitize=all)
 endfunction()

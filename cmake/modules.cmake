@@ -3,18 +3,6 @@
 # lab/MODULE a library trocar_MODULE_lab of what only benchmarks and tests call.
 # What it links is what src/modules.txt allows it to include.
 
-# Modules that read, write, record and show results: no loop of theirs takes long, and less optimising saves a third of the time
-# to compile them. Import takes as long as with -O3.
-set(trocar_light_modules config signing database dicom io png scene scoring storage learning cohort results exams report case_builder
-  web)
-
-# What reads files of others, talks to devices and clients, or repeats whole attempts: minutes in a Debug build with sanitizers, too.
-set(trocar_quick_modules core realtime config geometry volume motion telemetry link devices server io dicom storage signing learning database
-  results web)
-
-# What reads bytes of files, devices and clients as numbers: every pointer is checked under the sanitizers.
-set(trocar_pointer_checked_modules volume link devices io dicom)
-
 # Sources of `io` and `cases` that the haptic server links: batches of their own, so that it gets no writers and no sessions with
 # them (tests/cli/server_program_test.cpp).
 set(trocar_server_sources
@@ -45,19 +33,28 @@ function(trocar_add_modules)
       continue()
     endif()
     string(REPLACE ":" ";" fields "${line}")
-    list(GET fields 0 name)
-    list(GET fields 1 uses)
-    list(GET fields 2 libraries)
-    foreach(field IN ITEMS name uses libraries)
+    list(APPEND fields " " " ")  # the last two may be missing
+    foreach(field IN ITEMS name uses libraries traits test_uses)
+      list(POP_FRONT fields ${field})
       string(STRIP "${${field}}" ${field})
+      separate_arguments(${field})
     endforeach()
-    separate_arguments(uses)
-    separate_arguments(libraries)
-    trocar_add_module(${tier} ${name} "${uses}" "${libraries}")
+    set_property(GLOBAL PROPERTY trocar_traits_${name} ${traits})
+    trocar_add_module(${tier} ${name} "${uses}" "${libraries}" "${test_uses}")
   endforeach()
 endfunction()
 
-function(trocar_add_module tier name uses libraries)
+# Whether a line of src/modules.txt (or tests/CMakeLists.txt, for a folder of tests) has this trait.
+function(trocar_has_trait out name trait)
+  get_property(traits GLOBAL PROPERTY trocar_traits_${name})
+  if(trait IN_LIST traits)
+    set(${out} TRUE PARENT_SCOPE)
+  else()
+    set(${out} FALSE PARENT_SCOPE)
+  endif()
+endfunction()
+
+function(trocar_add_module tier name uses libraries test_uses)
   set(tier_folder ${PROJECT_SOURCE_DIR}/src/${tier})
   set(folder ${tier_folder}/${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp)
@@ -122,12 +119,15 @@ function(trocar_add_module tier name uses libraries)
     endif()
     set(scope PUBLIC)
     target_link_libraries(${target} PUBLIC ${links} PRIVATE $<BUILD_INTERFACE:trocar_warnings>)
-    if(TROCAR_SANITIZED STREQUAL "quick" AND NOT name IN_LIST trocar_quick_modules)
+    foreach(trait IN ITEMS light sanitized pointers)
+      trocar_has_trait(is_${trait} ${name} ${trait})
+    endforeach()
+    if(TROCAR_SANITIZED STREQUAL "quick" AND NOT is_sanitized)
       trocar_leave_unchecked(${target})
       trocar_use_precompiled(${target} trocar_precompiled_unchecked)
-    elseif(TROCAR_CHECKS_BEHAVIOUR AND name IN_LIST trocar_pointer_checked_modules)
+    elseif(TROCAR_CHECKS_BEHAVIOUR AND is_pointers)
       trocar_use_precompiled(${target} trocar_precompiled)
-    elseif(name IN_LIST trocar_light_modules)
+    elseif(is_light)
       trocar_optimise_little(${target})
       trocar_skip_pointer_checks(${target})
       trocar_use_precompiled(${target} trocar_precompiled_light)
@@ -199,12 +199,18 @@ function(trocar_add_module tier name uses libraries)
   endif()
   if(TROCAR_TESTS AND tests)
     trocar_add_test(${name} ${target} ${tests})
+    foreach(use IN LISTS test_uses)
+      get_property(reached_by_use GLOBAL PROPERTY trocar_reach_${use})
+      list(APPEND reached ${use} ${reached_by_use})
+      target_link_libraries(${name}_test PRIVATE trocar_${use})
+    endforeach()
+    list(REMOVE_DUPLICATES reached)
     foreach(use IN LISTS name reached)
       if(TARGET trocar_${use}_lab)
         target_link_libraries(${name}_test PRIVATE trocar_${use}_lab)
       endif()
     endforeach()
-    foreach(use IN LISTS name uses)
+    foreach(use IN LISTS name uses test_uses)
       if(TARGET trocar_${use}_testing)
         target_link_libraries(${name}_test PRIVATE trocar_${use}_testing)
       endif()
@@ -215,6 +221,9 @@ endfunction()
 
 # One test program of GoogleTest files.
 function(trocar_add_test name library)
+  foreach(trait IN ITEMS sanitized display embedded long)
+    trocar_has_trait(is_${trait} ${name} ${trait})
+  endforeach()
   trocar_unite(batches ${name}_test ${ARGN})
   add_executable(${name}_test ${batches})
   if(NOT TARGET trocar_test_main)
@@ -231,7 +240,7 @@ function(trocar_add_test name library)
   endif()
   set_target_properties(${name}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   set(launcher)
-  if(name MATCHES "^(scene|cli|trainer)$")  # VTK and Qt draw on an X server only
+  if(is_display)  # VTK and Qt draw on an X server only
     set(launcher ${PROJECT_SOURCE_DIR}/scripts/with_display)
   endif()
   set(timeout_s 600)
@@ -255,7 +264,10 @@ function(trocar_add_test name library)
     add_test(NAME ${test_name} COMMAND ${launcher} $<TARGET_FILE:${name}_test>)
     set_tests_properties(${test_name} PROPERTIES TIMEOUT ${timeout_s} ENVIRONMENT "${environment_of_part}")
     # These open the embedded patient: it is generated once, before the first of them.
-    if(name MATCHES "^(cases|attempt|servers|cli|result_commands|end_to_end|languages|trainer)$")
+    if(is_long)
+      set_tests_properties(${test_name} PROPERTIES COST 100)
+    endif()
+    if(is_embedded)
       set_tests_properties(${test_name} PROPERTIES FIXTURES_REQUIRED embedded_patient)
       if(NOT name STREQUAL "cases")
         add_dependencies(${name}_test cases_test)
@@ -267,11 +279,8 @@ function(trocar_add_test name library)
     set_tests_properties(embedded_patient PROPERTIES FIXTURES_SETUP embedded_patient TIMEOUT ${timeout_s} COST 1000
       ENVIRONMENT "${environment}")
   endif()
-  if(name MATCHES "^(anatomy|ultrasound|registration|server|trainer)$")  # long ones begin early
-    set_tests_properties(${name} PROPERTIES COST 100)
-  endif()
   # What is left unchecked there runs the reference attempts as any Debug build.
-  if(name IN_LIST trocar_quick_modules OR (name STREQUAL "same_bits" AND TROCAR_SANITIZED STREQUAL "quick"))
+  if(is_sanitized OR (name STREQUAL "same_bits" AND TROCAR_SANITIZED STREQUAL "quick"))
     set_tests_properties(${name} PROPERTIES LABELS quick)
     add_dependencies(quick_tests ${name}_test)
   endif()

@@ -140,7 +140,7 @@ class Weighing {
 Status test_device(devices::HapticDevice& device, double rate_hz, int priority,
                    const std::filesystem::path& stylus_folder) {
   server::DeviceTrial trial(device, rate_hz);
-  const haptics::DevicePreset& preset = device.preset();
+  const stylus::DevicePreset& preset = device.preset();
   fmt::print("device\t{}\t{}\t{}\t{:.2f}\t{:d}\n", device.name(), preset.title, preset.sensed_dof, trial.push_n(),
              preset.has_force());
   std::fflush(stdout);

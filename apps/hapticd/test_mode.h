@@ -8,7 +8,7 @@ namespace trocar {
 
 /// Tests the device until standard input ends: prints a description of the device, then its state 30 times a second.
 /// Lines on standard input: "push" applies a small upward force; "weigh" weighs the stylus (server/stylus_weighing.h)
-/// and saves its weight in `stylus_folder` (devices/stylus_profile.h; empty: not saved); "forget" deletes the saved
+/// and saves its weight in `stylus_folder` (devices/workspace_map.h; empty: not saved); "forget" deletes the saved
 /// weight. Output lines, with tabs between the fields:
 ///   device NAME TITLE SENSED_DOF PUSH_N HAS_FORCE(0|1)
 ///   state X_MM Y_MM Z_MM AXIS_X AXIS_Y AXIS_Z BUTTONS IS_THERE(0|1) FORCE_N FAULT ENDED_PUSHES

@@ -10,11 +10,11 @@
 #include <iterator>
 #include <optional>
 
-#include "anatomy/phantom/phantom.h"
 #include "command.h"
 #include "core/files/folders.h"
 #include "core/version.h"
 #include "pages/start_page.h"
+#include "phantom/phantom.h"
 #include "program_end.h"
 #include "results/repository.h"
 #include "scene/render_patient.h"
@@ -87,12 +87,10 @@ Result<TrainerChoice> with_arguments(TrainerChoice choice, const Arguments& argu
   }
   if (arguments.patient_seed) choice.patient_seed = *arguments.patient_seed;
   if (!arguments.patient) return choice;
-  const auto& embedded = anatomy::embedded_patients();
   std::error_code error;
   if (fs::is_directory(*arguments.patient, error)) {
     choice.patient = fs::absolute(*arguments.patient).string();
-  } else if (std::any_of(embedded.begin(), embedded.end(),
-                         [&](const anatomy::PhantomInfo& info) { return info.name == *arguments.patient; })) {
+  } else if (phantom::find_embedded_patient(*arguments.patient)) {
     choice.patient = *arguments.patient;
   } else {
     return fail_usage("no such patient", *arguments.patient,

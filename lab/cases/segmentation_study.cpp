@@ -6,10 +6,10 @@
 #include <memory>
 #include <numbers>
 
-#include "anatomy/complete_labels.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "haptics/tick.h"
+#include "patient_builder/complete_labels.h"
 
 namespace trocar::cases {
 namespace {
@@ -179,8 +179,8 @@ PathError compare_on_path(Needles& needles, const haptics::HapticScene& full, co
 
 Result<anatomy::VirtualPatient> partly_segmented(const anatomy::VirtualPatient& full,
                                                  std::span<const std::string_view> tissues, Rest rest) {
-  TROCAR_TRY(anatomy::VirtualPatient partly, anatomy::with_segmented_only(full, tissues));
-  if (rest == Rest::kUnlabelled) anatomy::remove_found_labels(partly);
+  TROCAR_TRY(anatomy::VirtualPatient partly, patient_builder::with_segmented_only(full, tissues));
+  if (rest == Rest::kUnlabelled) patient_builder::remove_found_labels(partly);
   partly.name += ", partly segmented";
   return partly;
 }

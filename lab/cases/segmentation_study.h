@@ -27,7 +27,7 @@ enum class Rest {
 };
 
 /// The patient that a build makes of the same CT, skin included, if only structures of these tissues are segmented
-/// (anatomy::with_segmented_only): thin structures of the kinds that `full` has are derived again from what is
+/// (patient_builder::with_segmented_only): thin structures of the kinds that `full` has are derived again from what is
 /// segmented and found. Errors: no structure data.
 Result<anatomy::VirtualPatient> partly_segmented(const anatomy::VirtualPatient& full,
                                                  std::span<const std::string_view> tissues, Rest rest = Rest::kFound);

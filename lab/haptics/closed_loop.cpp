@@ -18,7 +18,8 @@ const char* to_string(Holder holder) noexcept {
   return "";
 }
 
-ClosedLoop::ClosedLoop(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset, Holder holder, double dt_s)
+ClosedLoop::ClosedLoop(std::shared_ptr<const HapticScene> scene, const stylus::DevicePreset& preset, Holder holder,
+                       double dt_s)
     : scene_(std::move(scene)), encoder_(preset.encoder), senses_rotation_(preset.sensed_dof == 6), dt_s_(dt_s) {
   constexpr double kLight_kg = 0.045;
   constexpr double kHeavy_kg = 0.15;
@@ -35,20 +36,20 @@ const telemetry::TickSample& ClosedLoop::carry(const Vec3& tip_P, const Vec3& ax
   stylus_.v_P = time_s_ > 0.0 ? Vec3((X_PS.p() - stylus_.X_PS.p()) / dt_s_) : Vec3::Zero();
   stylus_.w_P = Vec3::Zero();
   stylus_.X_PS = X_PS;
-  R_PS_told_ = X_PS.R();
+  reported_R_PS_ = X_PS.R();
   return sense();
 }
 
-const telemetry::TickSample& ClosedLoop::run(const StylusHold& hold) noexcept {
-  const StylusMotion motion = step_stylus(stylus_, params_, hold, acting_P_, scene_->gravity_P, dt_s_);
+const telemetry::TickSample& ClosedLoop::run(const stylus::StylusHold& hold) noexcept {
+  const stylus::StylusMotion motion = stylus::step_stylus(stylus_, params_, hold, acting_P_, scene_->gravity_P, dt_s_);
   observer_.add(acting_P_ - weight_P_, motion.v_P, motion.w_P, dt_s_);
   return sense();
 }
 
 const telemetry::TickSample& ClosedLoop::sense() noexcept {
   time_s_ += dt_s_;
-  Pose X_WS = quantise(scene_->X_PW.inverse() * stylus_.X_PS, encoder_);
-  if (!senses_rotation_) X_WS = Pose(scene_->X_PW.R().transpose() * R_PS_told_, X_WS.p());
+  Pose X_WS = stylus::quantise(scene_->X_PW.inverse() * stylus_.X_PS, encoder_);
+  if (!senses_rotation_) X_WS = Pose(scene_->X_PW.R().transpose() * reported_R_PS_, X_WS.p());
   HapticInput input;
   input.time_s = time_s_;
   input.dt_s = dt_s_;

@@ -3,10 +3,10 @@
 #include <array>
 #include <memory>
 
-#include "haptics/coupling/device_preset.h"
-#include "haptics/coupling/virtual_stylus.h"
 #include "haptics/tick.h"
 #include "lab/haptics/passivity_observer.h"
+#include "stylus/device_preset.h"
+#include "stylus/virtual_stylus.h"
 
 namespace trocar::haptics {
 
@@ -20,15 +20,16 @@ const char* to_string(Holder holder) noexcept;
 /// computation, hold). Heap: one object; then real-time safe. Frame P: the device's base is the scene's.
 class ClosedLoop {
  public:
-  ClosedLoop(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset, Holder holder, double dt_s = 0.001);
+  ClosedLoop(std::shared_ptr<const HapticScene> scene, const stylus::DevicePreset& preset, Holder holder,
+             double dt_s = 0.001);
 
   /// Moves the device along a prescribed path: one tick with the needle's tip and axis there.
   const telemetry::TickSample& carry(const Vec3& tip_P, const Vec3& axis_P) noexcept;
   /// One tick of the device on its own under `hold`.
-  const telemetry::TickSample& run(const StylusHold& hold) noexcept;
+  const telemetry::TickSample& run(const stylus::StylusHold& hold) noexcept;
 
-  const VirtualStylusState& stylus() const noexcept { return stylus_; }
-  VirtualStylusState& stylus() noexcept { return stylus_; }
+  const stylus::VirtualStylusState& stylus() const noexcept { return stylus_; }
+  stylus::VirtualStylusState& stylus() noexcept { return stylus_; }
   Vec3 tip_P() const noexcept { return (stylus_.X_PS * scene_->X_SN).p(); }
   const telemetry::TickSample& last() const noexcept { return sample_; }
   const Wrench& wrench_P() const noexcept { return wrench_P_; }
@@ -41,16 +42,16 @@ class ClosedLoop {
   const telemetry::TickSample& sense() noexcept;
 
   std::shared_ptr<const HapticScene> scene_;
-  EncoderParams encoder_;
+  stylus::EncoderParams encoder_;
   bool senses_rotation_;
-  VirtualStylusParams params_;
+  stylus::VirtualStylusParams params_;
   double dt_s_;
   double time_s_ = 0.0;
-  VirtualStylusState stylus_;
-  Mat3 R_PS_told_ = Mat3::Identity();  ///< Orientation reported for a device that senses no rotation.
-  Wrench wrench_P_;                    ///< About S: wrench of the last tick; acts during the tick after the next.
-  Wrench acting_P_;                    ///< About S: wrench that acts during the next tick.
-  Wrench next_weight_P_, weight_P_;    ///< Parts of these that carry the weight: not energy of the tissue.
+  stylus::VirtualStylusState stylus_;
+  Mat3 reported_R_PS_ = Mat3::Identity();  ///< Orientation reported for a device that senses no rotation.
+  Wrench wrench_P_;                        ///< About S: wrench of the last tick; acts during the tick after the next.
+  Wrench acting_P_;                        ///< About S: wrench that acts during the next tick.
+  Wrench next_weight_P_, weight_P_;        ///< Parts of these that carry the weight: not energy of the tissue.
   HapticState state_;
   telemetry::TickSample sample_;
   PassivityObserver observer_;

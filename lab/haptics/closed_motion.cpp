@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "haptics/closed_loop/rotation.h"
-
 namespace trocar::haptics {
 
 void ClosedMotion::add(const Vec3& shift_P, const Vec3& turn_rad_P, double mm_per_s) {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <memory>
 
-#include "haptics/closed_loop/rotation.h"
 #include "lab/haptics/passivity_observer.h"
 
 namespace trocar::haptics {

@@ -6,11 +6,11 @@
 
 namespace trocar::haptics {
 
-std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset,
+std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene, const stylus::DevicePreset& preset,
                                        const PushTrial& trial) {
   const auto loop = std::make_unique<ClosedLoop>(scene, preset, Holder::kHand);
   loop->carry({0.0, 0.0, trial.from_mm}, Vec3::UnitZ());
-  StylusHold hold = make_guiding_hand(scene->needle.length_mm);
+  stylus::StylusHold hold = stylus::make_guiding_hand(scene->needle.length_mm);
   const double push_s = (trial.to_mm - trial.from_mm) / trial.speed_mm_per_s;
   const auto ticks = static_cast<int>((push_s + trial.hold_s) / loop->dt_s());
   const double length_mm = scene->needle.length_mm;

@@ -25,7 +25,7 @@ struct PushSample {
   std::uint8_t layer;   ///< Punctured layer.
 };
 
-std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset,
+std::vector<PushSample> run_push_trial(std::shared_ptr<const HapticScene> scene, const stylus::DevicePreset& preset,
                                        const PushTrial& trial);
 
 /// Metrics of a push against an unyielding structure. `surface_mm`: depth of its resting surface.

@@ -20,17 +20,17 @@ void carry_in(ClosedLoop& loop, double depth_mm) noexcept {
 }
 
 /// A hand that holds the present pose, or no hand.
-StylusHold hold_here(const ClosedLoop& loop, Holder holder, double needle_mm) noexcept {
-  StylusHold hold;
-  if (holder == Holder::kHand) hold = make_hand();
-  if (holder == Holder::kGuidingHand) hold = make_guiding_hand(needle_mm);
+stylus::StylusHold hold_here(const ClosedLoop& loop, Holder holder, double needle_mm) noexcept {
+  stylus::StylusHold hold;
+  if (holder == Holder::kHand) hold = stylus::make_hand();
+  if (holder == Holder::kGuidingHand) hold = stylus::make_guiding_hand(needle_mm);
   hold.X_PS = loop.stylus().X_PS;
   return hold;
 }
 
 /// Limits: a quantised tip may wander by four counts, and an oscillation by counts ten times a second against the
 /// coupling's spring defines the power. The force has one limit for all devices.
-void judge(StabilityOutcome& outcome, const DevicePreset& preset, const StabilityTrial& trial,
+void judge(StabilityOutcome& outcome, const stylus::DevicePreset& preset, const StabilityTrial& trial,
            const HapticScene& scene) noexcept {
   constexpr double kCounts = 4.0;
   constexpr double kSwings_per_s = 10.0;
@@ -41,11 +41,11 @@ void judge(StabilityOutcome& outcome, const DevicePreset& preset, const Stabilit
 
 }  // namespace
 
-StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset,
+StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, const stylus::DevicePreset& preset,
                                      Holder holder, const StabilityTrial& trial) {
   const auto loop = std::make_unique<ClosedLoop>(scene, preset, holder);
   carry_in(*loop, trial.depth_mm);
-  const StylusHold hold = hold_here(*loop, holder, scene->needle.length_mm);
+  const stylus::StylusHold hold = hold_here(*loop, holder, scene->needle.length_mm);
   // A needle is not constrained laterally before the skin puncture.
   const bool is_open =
       loop->last().phase != telemetry::InsertionPhase::kOutside && loop->last().contact_to_puncture_mm != Vec3::Zero();

@@ -30,7 +30,7 @@ struct StabilityOutcome {
   static constexpr double kAllowed_n = 0.3;
 };
 
-StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, const DevicePreset& preset,
+StabilityOutcome run_stability_trial(std::shared_ptr<const HapticScene> scene, const stylus::DevicePreset& preset,
                                      Holder holder, const StabilityTrial& trial);
 
 }  // namespace trocar::haptics

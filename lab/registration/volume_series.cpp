@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "core/random.h"
 #include "core/result.h"
@@ -38,7 +37,7 @@ std::vector<GeneratedVolume> make_volume_series(const SeriesOptions& options, st
     AcquisitionOptions acquisition;
     acquisition.geometry.size.fill(options.edge_voxels);
     const Vec3 axis = Vec3(random.normal(), random.normal(), random.normal()).normalized();
-    if (n > 0) R_WU = R_WU * Eigen::AngleAxisd(options.turn_deg * std::numbers::pi / 180.0, axis);
+    if (n > 0) R_WU = R_WU * Eigen::AngleAxisd(radians(options.turn_deg), axis);
     const Vec3 middle_W(0.5 * edge + n * options.step_mm + random.uniform(-3.0, 3.0),
                         0.5 * edge + 2.0 + random.uniform(-4.0, 4.0), 0.5 * edge + 2.0 + random.uniform(-4.0, 4.0));
     acquisition.X_WU = Pose(R_WU, middle_W - R_WU * Vec3::Constant(0.5 * (edge - 1.0)));

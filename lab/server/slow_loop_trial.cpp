@@ -17,7 +17,7 @@ constexpr double kPeriod_s = 0.001;
 constexpr double kApproach_mm_per_s = 20.0;
 constexpr double kStart_mm = -10.0;
 
-std::unique_ptr<devices::HapticDevice> make_simulated(const haptics::DevicePreset& preset) {
+std::unique_ptr<devices::HapticDevice> make_simulated(const stylus::DevicePreset& preset) {
   if (!preset.has_force()) return std::make_unique<devices::PointerDevice>(preset, devices::PointerParams{});
   return std::make_unique<devices::VirtualHapticDevice>(preset, devices::SimulatedDeviceParams{});
 }
@@ -45,7 +45,7 @@ void count_wait(void* waited_s, double wait_ms) noexcept {
 
 }  // namespace
 
-SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const haptics::DevicePreset& preset,
+SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const stylus::DevicePreset& preset,
                                     const SlowLoopTrial& trial) {
   double waited_s = 0.0;
   const bool is_healthy = trial.slow_ms <= 0.0;

@@ -31,7 +31,7 @@ struct SlowLoopOutcome {
 
 /// `preset`: without motors, the trial uses the pointer of a trainer instead of a simulated stylus. `scene`: the skin
 /// is at z = 0, +z points into the body.
-SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const haptics::DevicePreset& preset,
+SlowLoopOutcome run_slow_loop_trial(const ServoScene& scene, const stylus::DevicePreset& preset,
                                     const SlowLoopTrial& trial);
 
 }  // namespace trocar::server

@@ -35,8 +35,8 @@ const Modules& small_tree() {
       "core :  : expected\n"
       "volume : core : highway\n"
       "[high]\n"
-      "io : volume : itk vtk-io\n"
-      "scene : volume : vtk-rendering\n");
+      "io : volume : itk vtk-io : light : scene\n"
+      "scene : volume : vtk-rendering : display\n");
   return modules;
 }
 
@@ -52,8 +52,8 @@ TEST(ModuleList, NamesUsesAndLibrariesAreRead) {
 
 TEST(ModuleList, ReportsMalformedAndDuplicateLines) {
   std::vector<std::string> complaints;
-  parse_modules("above : :\n[low]\ncore : :\ncore : :\nvolume core\n[low]\n", complaints);
-  EXPECT_EQ(complaints.size(), 4u) << joined(complaints);
+  parse_modules("above : :\n[low]\ncore : :\ncore : :\nvolume core\n[low]\nio : : : lite\na : : : : : b\n", complaints);
+  EXPECT_EQ(complaints.size(), 6u) << joined(complaints);
 }
 
 TEST(Arrows, AreTransitive) {
@@ -103,6 +103,7 @@ TEST(Includes, UpwardOrSidewardArrowIsRefused) {
 
 TEST(Includes, HeaderWithoutItsModuleIsForTestsOnly) {
   EXPECT_EQ(module_verdict("src/high/io/test/a_test.cpp", "#include \"make_grids.h\"\n"), "");
+  EXPECT_EQ(module_verdict("src/high/io/test/a_test.cpp", "#include \"scene/view.h\"\n"), "");  // for its tests only
   EXPECT_NE(module_verdict("src/high/io/a.cpp", "#include \"make_grids.h\"\n"), "");
 }
 
@@ -162,9 +163,9 @@ TEST(ModuleReadme, HasTenToTwentyFiveLines) {
     return lines;
   };
   EXPECT_TRUE(check_module_readme("io", text(10)).empty());
-  EXPECT_TRUE(check_module_readme("io", text(25)).empty());
+  EXPECT_TRUE(check_module_readme("io", text(40)).empty());
   EXPECT_FALSE(check_module_readme("io", text(9)).empty());
-  EXPECT_FALSE(check_module_readme("io", text(26)).empty());
+  EXPECT_FALSE(check_module_readme("io", text(41)).empty());
 }
 
 class Repository : public ::testing::Test {

@@ -9,7 +9,7 @@ namespace trocar::architecture {
 namespace {
 
 constexpr int kMinReadmeLines = 10;
-constexpr int kMaxReadmeLines = 25;
+constexpr int kMaxReadmeLines = 40;
 
 std::set<std::string> words(const std::string& text) {
   std::istringstream stream(text);
@@ -148,6 +148,8 @@ std::optional<Place> find_place(const Modules& modules, const std::string& path)
     const auto found = modules.find(place.module);
     if (found == modules.end() || found->second.tier != path.substr(4, behind_tier - 4)) return std::nullopt;
     place.modules = reachable(modules, place.module);
+    if (place.is_test)
+      for (const std::string& use : found->second.test_uses) place.modules.merge(reachable(modules, use));
     place.libraries = found->second.libraries;
     return place;
   }
@@ -163,7 +165,7 @@ std::optional<std::string> complaint_about_ours(const Place& place, const std::s
     return "write the module in front: \"" + place.module + "/" + header + "\"";
   }
   const std::string target = header.substr(0, slash);
-  if (target == "bench" && (place.is_bench || place.is_program)) return std::nullopt;
+  if ((target == "bench" || target == "cli") && (place.is_bench || place.is_program)) return std::nullopt;
   if (target == "lab") {
     const std::string lab = header.substr(slash + 1, header.find('/', slash + 1) - slash - 1);
     if (place.is_bench || (place.is_test && place.module.empty())) return std::nullopt;
@@ -216,15 +218,21 @@ Modules parse_modules(std::string_view text, std::vector<std::string>& complaint
     std::istringstream stream(line + " ");
     for (std::string field; std::getline(stream, field, ':');) fields.push_back(field);
     const std::set<std::string> names = fields.empty() ? std::set<std::string>{} : words(fields[0]);
-    if (fields.size() != 3 || names.size() != 1 || tier.empty()) {
-      complaints.push_back("src/modules.txt: not \"name : uses : libraries\" below a [tier]: " + line);
+    if (fields.size() < 3 || fields.size() > 5 || names.size() != 1 || tier.empty()) {
+      complaints.push_back(
+          "src/modules.txt: not \"name : uses : libraries [: traits [: uses of tests]]\" below a [tier]: " + line);
       continue;
     }
+    fields.resize(5);
     const std::string& name = *names.begin();
     const int level = static_cast<int>(tiers.size());
-    if (!modules.emplace(name, Module{tier, level, name, words(fields[1]), words(fields[2])}).second) {
+    if (!modules.emplace(name, Module{tier, level, name, words(fields[1]), words(fields[2]), words(fields[4])})
+             .second) {
       complaints.push_back("src/modules.txt: " + name + " is listed twice");
     }
+    static const std::set<std::string> known_traits = {"light", "sanitized", "pointers", "display", "embedded", "long"};
+    for (const std::string& trait : words(fields[3]))
+      if (!known_traits.contains(trait)) complaints.push_back("src/modules.txt: " + name + " has no trait " + trait);
   }
   return modules;
 }
@@ -314,7 +322,8 @@ std::vector<std::string> check_folder_includes(const Modules& folders, const std
 std::vector<std::string> check_module_readme(const std::string& module, std::string_view text) {
   const int count = count_lines(text);
   if (count >= kMinReadmeLines && count <= kMaxReadmeLines) return {};
-  return {"src/" + module + "/README.md has " + std::to_string(count) + " lines; 10 to 25 tell enough"};
+  return {"README.md of " + module + " has " + std::to_string(count) +
+          " lines; 10 to 40, with an example, tell enough"};
 }
 
 int count_lines(std::string_view text) {

@@ -15,10 +15,12 @@ struct Module {
   std::string name;
   std::set<std::string> uses;       ///< Modules it may include directly.
   std::set<std::string> libraries;  ///< Third-party libraries it may include.
+  std::set<std::string> test_uses;  ///< Modules that only its tests may include besides.
 };
 using Modules = std::map<std::string, Module>;
 
-/// Reads "[tier]" and "name : uses : libraries" lines; `complaints` lists malformed lines and repeated names.
+/// Reads "[tier]" and "name : uses : libraries [: traits [: uses of tests]]" lines; `complaints` lists malformed lines,
+/// repeated names and unknown traits.
 Modules parse_modules(std::string_view text, std::vector<std::string>& complaints);
 
 /// Modules that `name` may include: itself and all that its dependencies may use. Also terminates for a cycle.
@@ -45,7 +47,7 @@ std::vector<std::string> check_includes(const Modules& modules, const std::strin
 std::vector<std::string> check_folder_includes(const Modules& folders, const std::string& top, const std::string& path,
                                                std::string_view source);
 
-/// Errors of a module's README.md, which must have 10 to 25 lines.
+/// Errors of a module's README.md, which must have 10 to 40 lines.
 std::vector<std::string> check_module_readme(const std::string& module, std::string_view text);
 
 /// Maximum number of lines of a file; a longer file must be split.

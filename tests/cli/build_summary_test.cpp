@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <map>
 
-#include "anatomy/phantom/phantom.h"
 #include "cli/program.h"
 #include "core/files/folders.h"
 #include "io/image/image_file.h"
+#include "phantom/phantom.h"
 
 namespace trocar::cli_test {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 class BuildSummary : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto patient = anatomy::generate_phantom("abdomen", 1, {{90, 72, 64}});
+    const auto patient = phantom::generate_phantom("abdomen", 1, {{90, 72, 64}});
     ASSERT_TRUE(patient) << patient.error().text();
     ASSERT_TRUE(io::write_image(patient->ct, folder_ / "ct.nrrd"));
     volume::LabelGrid liver(patient->labels.geometry, 0);

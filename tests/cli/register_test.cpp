@@ -1,8 +1,6 @@
 // trocar register: the files that it writes, and what it refuses.
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "cli/program.h"
 #include "io/image/image_file.h"
 #include "io/markups_file.h"
@@ -42,7 +40,7 @@ bool exists(const std::string& path) {
 
 TEST(Register, WritesTransformImageAndFigures) {
   const TemporaryFolder folder;
-  const testing::GeneratedPair pair = write_pair(folder, 10.0, 10.0 * std::numbers::pi / 180.0);
+  const testing::GeneratedPair pair = write_pair(folder, 10.0, radians(10.0));
   const config::Json json = json_of(
       trocar(volumes(folder) + " --json --out " + (folder / "x.tfm") + " --checkerboard " + (folder / "x.png")));
   for (const char* key : {"metric", "overlap", "confidence", "seconds"}) EXPECT_TRUE(json[key].is_number()) << key;

@@ -3,9 +3,9 @@
 #include <cstdlib>
 #include <map>
 
-#include "anatomy/phantom/phantom.h"
 #include "attempt.h"
 #include "cases/testing/cached_case.h"
+#include "phantom/phantom.h"
 
 namespace trocar::testing {
 namespace {
@@ -23,10 +23,11 @@ void expect_passes(const std::string& patient, const std::string& task) {
 }
 
 TEST(Experts, PassTheirTasksOnTheMostDifficultPatients) {
-  std::map<std::string, const anatomy::PhantomInfo*> most_difficult;
-  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients())
+  std::map<std::string, const phantom::PhantomInfo*> most_difficult;
+  const std::vector<phantom::PhantomInfo> patients = phantom::embedded_patients();
+  for (const phantom::PhantomInfo& info : patients)
     for (const std::string& task : info.tasks) {
-      const anatomy::PhantomInfo*& known = most_difficult[task];
+      const phantom::PhantomInfo*& known = most_difficult[task];
       if (known == nullptr || info.difficulty > known->difficulty) known = &info;
     }
   EXPECT_EQ(most_difficult.size(), 4u);
@@ -37,7 +38,7 @@ TEST(Experts, PassTheirTasksOnTheMostDifficultPatients) {
 TEST(Experts, PassTheirTasksOnAllEmbeddedPatients) {
   if (std::getenv("TROCAR_TEST_EVERY_PATIENT") == nullptr) GTEST_SKIP() << "TROCAR_TEST_EVERY_PATIENT is not set";
   int attempts = 0;
-  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
+  for (const phantom::PhantomInfo& info : phantom::embedded_patients()) {
     if (info.difficulty == 0) continue;
     for (const std::string& task : info.tasks) {
       expect_passes(info.name, task);

@@ -6,8 +6,7 @@
 #include <map>
 #include <set>
 
-#include "anatomy/build_patient.h"
-#include "anatomy/phantom/phantom.h"
+#include "anatomy/label_statistics.h"
 #include "cases/force_curve.h"
 #include "cases/prepare_case.h"
 #include "core/files/folders.h"
@@ -15,6 +14,8 @@
 #include "haptics/haptic_scene.h"
 #include "io/image/image_file.h"
 #include "io/patient/build_from_files.h"
+#include "patient_builder/build_patient.h"
+#include "phantom/phantom.h"
 #include "tasks/assess_path.h"
 #include "tasks/plan.h"
 #include "volume/resample.h"
@@ -33,7 +34,7 @@ struct Scan {
 
 const Scan& scan() {
   static const Scan made = [] {
-    const auto patient = anatomy::generate_phantom("abdomen", 1, {{133, 105, 90}});
+    const auto patient = phantom::generate_phantom("abdomen", 1, {{133, 105, 90}});
     TROCAR_CHECK(patient.has_value());
     return Scan{patient->ct, patient->labels, patient->label_table};
   }();
@@ -190,7 +191,7 @@ TEST_F(Invariance, DicomSlicesGiveOnePatient) {
 TEST_F(Invariance, ObliqueVolumeMatchesWithinInterpolation) {
   // The scan turned by 15 degrees about an oblique axis, on a grid of 2 mm that holds it.
   volume::GridGeometry oblique;
-  oblique.R_PV = Eigen::AngleAxisd(15.0 * M_PI / 180.0, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  oblique.R_PV = Eigen::AngleAxisd(radians(15.0), Vec3(1, 2, 3).normalized()).toRotationMatrix();
   oblique.spacing_mm.setConstant(2.0);
   const volume::GridGeometry& g = scan().ct.geometry;
   Vec3 low = Vec3::Constant(HUGE_VAL);

@@ -2,12 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "anatomy/build_patient.h"
-#include "anatomy/test/make_torso.h"
+#include "anatomy/label_statistics.h"
 #include "attempt.h"
 #include "core/testing/test_data.h"
 #include "io/image/image_file.h"
 #include "io/patient/label_sources.h"
+#include "patient_builder/build_patient.h"
+#include "patient_builder/test/make_torso.h"
 #include "volume/test/make_grids.h"
 
 namespace trocar::testing {
@@ -17,11 +18,12 @@ namespace fs = std::filesystem;
 /// A CT and its segmentation, and the two stored in another order.
 struct Volumes {
   volume::CtGrid ct;
-  std::vector<anatomy::LabelSource> sources;
+  std::vector<patient_builder::LabelSource> sources;
 
   Volumes stored(const std::array<std::size_t, 3>& axis, const std::array<bool, 3>& is_turned) const {
     Volumes other{stored_in_order(ct, axis, is_turned), sources};
-    for (anatomy::LabelSource& source : other.sources) source.labels = stored_in_order(source.labels, axis, is_turned);
+    for (patient_builder::LabelSource& source : other.sources)
+      source.labels = stored_in_order(source.labels, axis, is_turned);
     return other;
   }
 };
@@ -29,7 +31,7 @@ struct Volumes {
 Result<cases::Case> case_of(const Volumes& volumes) {
   std::vector<std::string> warnings;
   TROCAR_TRY(anatomy::VirtualPatient patient,
-             anatomy::build_patient(volumes.ct, volumes.sources, {"stored", {"test"}}, warnings));
+             patient_builder::build_patient(volumes.ct, volumes.sources, {"stored", {"test"}}, warnings));
   return cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(patient)), {});
 }
 
@@ -54,9 +56,9 @@ void expect_same(const cases::Case& axial, const Attempt& expected, const Volume
 }
 
 TEST(StorageOrder, DoesNotMatterForPathAndForces) {
-  const volume::CtGrid ct = anatomy::Torso().ct(anatomy::Torso::grid({6, 5, 8}));
-  const anatomy::LabelSource liver{
-      "liver.nii.gz", anatomy::Torso::mask(anatomy::Torso::grid({6, 5, 8}), anatomy::Torso::is_liver), {{1, "liver"}}};
+  const volume::CtGrid ct = patient_builder::Torso().ct(patient_builder::Torso::grid({6, 5, 8}));
+  const patient_builder::LabelSource liver{
+      "liver.nii.gz", patient_builder::Torso::mask(patient_builder::Torso::grid({6, 5, 8}), patient_builder::Torso::is_liver), {{1, "liver"}}};
   const Volumes volumes{ct, {liver}};
   const auto axial = case_of(volumes);
   ASSERT_TRUE(axial.has_value()) << axial.error().text();

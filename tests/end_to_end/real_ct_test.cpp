@@ -5,11 +5,11 @@
 
 #include <cstdlib>
 
-#include "anatomy/build_patient.h"
 #include "attempt.h"
 #include "core/testing/test_data.h"
 #include "io/image/image_file.h"
 #include "io/patient/label_sources.h"
+#include "patient_builder/build_patient.h"
 
 namespace trocar::testing {
 namespace {
@@ -21,7 +21,7 @@ Result<cases::Case> case_of_files(const fs::path& ct_path, const std::vector<fs:
   TROCAR_TRY(auto sources, io::read_label_sources(labels, label_map));
   std::vector<std::string> warnings;
   TROCAR_TRY(anatomy::VirtualPatient patient,
-             anatomy::build_patient(ct, std::move(sources), {"real", {"test data"}}, warnings));
+             patient_builder::build_patient(ct, std::move(sources), {"real", {"test data"}}, warnings));
   return cases::prepare_case(std::make_shared<const anatomy::VirtualPatient>(std::move(patient)), {});
 }
 

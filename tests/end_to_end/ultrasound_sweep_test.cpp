@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
+#include "phantom/phantom.h"
 #include "ultrasound/probe/probe_placement.h"
 #include "ultrasound/probe/probe_view.h"
 #include "ultrasound/sweep/freehand.h"
@@ -43,7 +43,7 @@ struct SweptPatient {
 
 Result<SweptPatient> sweep_gallbladder() {
   SweptPatient swept;
-  TROCAR_TRY(swept.patient, anatomy::generate_phantom("abdomen"));
+  TROCAR_TRY(swept.patient, phantom::generate_phantom("abdomen"));
   TROCAR_TRY(const auto views, ultrasound::load_probe_views(data_dir() / "views.toml"));
   TROCAR_TRY(const ultrasound::ProbeView view, ultrasound::choose_view(swept.patient, views, "gallbladder"));
   TROCAR_TRY(const ultrasound::Transducer transducer,

@@ -4,7 +4,6 @@
 
 #include <set>
 
-#include "anatomy/phantom/phantom.h"
 #include "anatomy/structure_words.h"
 #include "anatomy/tissue/tissue_parameters.h"
 #include "anatomy/tissue/tissue_table.h"
@@ -12,6 +11,7 @@
 #include "cases/testing/cached_case.h"
 #include "core/files/folders.h"
 #include "end_to_end/attempt.h"
+#include "phantom/phantom.h"
 #include "report/html_report.h"
 #include "tasks/action.h"
 #include "tasks/task.h"
@@ -123,7 +123,7 @@ TEST(Languages, TranslateEveryTask) {
       if (group.name != "transfer") lacking.check(anatomy::structure_words(group.name));
       for (const anatomy::TissueParameter& parameter : group.parameters) lacking.check(std::string(parameter.name));
     }
-    for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
+    for (const phantom::PhantomInfo& info : phantom::embedded_patients()) {
       lacking.check(info.description);
       lacking.check(info.briefing);
       if (!info.referral) continue;

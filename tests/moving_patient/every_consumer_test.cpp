@@ -62,8 +62,8 @@ class Row {
 /// A device whose pose the test sets.
 class PosedDevice final : public devices::HapticDevice {
  public:
-  explicit PosedDevice(haptics::DevicePreset preset) : preset_(std::move(preset)) {}
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  explicit PosedDevice(stylus::DevicePreset preset) : preset_(std::move(preset)) {}
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "posed"; }
   devices::DeviceReading read(double) noexcept override { return {devices::DeviceStatus::kFresh, X_DS, 0}; }
   bool write(const Wrench&) noexcept override { return true; }
@@ -71,13 +71,13 @@ class PosedDevice final : public devices::HapticDevice {
   Pose X_DS;
 
  private:
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
 };
 
 /// A haptic server's loop over the block, one period at a time.
 class ServerLab {
  public:
-  explicit ServerLab(const char* tool) : preset_(*haptics::load_device_preset(data_dir() / "devices.toml", "premium")) {
+  explicit ServerLab(const char* tool) : preset_(*stylus::load_device_preset(data_dir() / "devices.toml", "premium")) {
     server::SceneBuilder builder(
         [](const std::string&, std::uint64_t, const Progress&) {
           return Result<std::shared_ptr<const anatomy::VirtualPatient>>(patient());
@@ -110,7 +110,7 @@ class ServerLab {
   }
 
  private:
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
   server::ServoScene scene_;
 };
 
@@ -219,7 +219,7 @@ TEST(EveryConsumer, SlicesShowTheTag) {
     plane.step_u_P = 0.4 * Vec3::UnitZ();
     plane.step_v_P = 0.4 * Vec3::UnitY();
     plane.origin_P = {tag_P.x(), 5.0, -45.0};
-    volume::RgbImage image;
+    image::RgbImage image;
     slices::paint_slice(*patient(), plane, style, buffers, image, motion);
     Vec3 sum = Vec3::Zero();
     double weight = 0.0;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include "attempt/servers/local_server.h"
+#include "attempt/servers/server_hosts.h"
 #include "cases/scene_request.h"
 #include "servers/live_server.h"
 #include "servers/simulated_attempt_lab.h"

@@ -10,7 +10,7 @@
 
 #include "attempt/live/attempt_loop.h"
 #include "attempt/live/live_attempt.h"
-#include "attempt/tools/transducer_motion.h"
+#include "attempt/tools/tool_motion.h"
 #include "cases/testing/phantom_case.h"
 #include "core/files/folders.h"
 #include "servers/simulated_server.h"

@@ -156,13 +156,10 @@ TEST_F(SimulatedAttemptTest, SendsParametersToARunningServer) {
 }
 
 TEST_F(SimulatedAttemptTest, RecordsAndReplaysChangedTissues) {
-  attempt::AttemptOptions chosen = options();
-  chosen.waits_for_begin = true;
+  const attempt::AttemptOptions chosen = options();
   start(chosen);
-  ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
   attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 4.0}}));  // before anything is recorded
-  ASSERT_TRUE(run_until([&] { return !attempt->view().message.empty(); }));
-  attempt->begin();
+  ASSERT_TRUE(run_until_phase(attempt::AttemptPhase::kReady)) << where();
   ASSERT_TRUE(run_until([&] { return attempt->view().session_s > 0.1; }));
   attempt->set_parameters(cases::tissue_parameters({{"skin", "fp", 6.0}}));
   attempt->perform(expert());

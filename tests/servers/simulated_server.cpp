@@ -36,7 +36,7 @@ class SimulatedServer::Device final : public devices::HapticDevice {
  public:
   Device(std::unique_ptr<devices::HapticDevice> device, const bool& is_plugged)
       : device_(std::move(device)), is_plugged_(is_plugged) {}
-  const haptics::DevicePreset& preset() const noexcept override { return device_->preset(); }
+  const stylus::DevicePreset& preset() const noexcept override { return device_->preset(); }
   std::string name() const override { return device_->name(); }
   devices::DeviceReading read(double now_s) noexcept override {
     devices::DeviceReading reading = device_->read(now_s);
@@ -319,7 +319,7 @@ link::ServerStatus SimulatedServer::status(double now_s) const {
 }
 
 link::Welcome SimulatedServer::welcome() const {
-  const haptics::DevicePreset& preset = process_->device.preset();
+  const stylus::DevicePreset& preset = process_->device.preset();
   link::Welcome welcome;
   welcome.server = "trocar-hapticd, simulated";
   welcome.tool = options_.tool;

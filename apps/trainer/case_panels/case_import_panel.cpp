@@ -17,9 +17,9 @@
 #include <optional>
 
 #include "anatomy/patient.h"
-#include "anatomy/plausibility/judge_anatomy.h"
 #include "case_builder/case_edits.h"
 #include "case_panels/case_panel.h"
+#include "patient_builder/plausibility/judge_anatomy.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/window_language.h"
 
@@ -198,15 +198,15 @@ class ImportPanel final : public CasePanel {
   }
 
   /// The first grave finding that was not confirmed if the import failed because of it, else the first one at all.
-  std::optional<anatomy::AnatomyFinding> next_finding() const {
+  std::optional<patient_builder::AnatomyFinding> next_finding() const {
     if (has_failed_) {
       if (findings_ != nullptr)
-        for (const anatomy::AnatomyFinding& finding : *findings_)
+        for (const patient_builder::AnatomyFinding& finding : *findings_)
           if (finding.is_grave && std::ranges::count(confirmed_, finding.name) == 0) return finding;
     } else if (editor_.work() != case_builder::CaseEditor::Work::kImporting && editor_.has_patient()) {
       const case_builder::CaseDraft& draft = editor_.draft();
-      for (const anatomy::AnatomyFinding& finding : draft.imported->findings)
-        if (!anatomy::is_confirmed(draft.provenance, finding.name)) return finding;
+      for (const patient_builder::AnatomyFinding& finding : draft.imported->findings)
+        if (!patient_builder::is_confirmed(draft.provenance, finding.name)) return finding;
     }
     return std::nullopt;
   }
@@ -228,23 +228,23 @@ class ImportPanel final : public CasePanel {
     finding_->setText(shown(open_finding_->text));
     confirm_->setText(has_failed_ ? tr("It is right: import as it is") : tr("It is right: keep it"));
     const std::string& option = open_finding_->repair;
-    repair_->setText(option == anatomy::kMirrorLabels           ? tr("Mirror the labels and import")
-                     : option == anatomy::kMirrorBoth           ? tr("Mirror CT and labels and import")
-                     : option.starts_with(anatomy::kUsePosture) ? tr("Import with this posture")
-                                                                : tr("Use those numbers and import"));
+    repair_->setText(option == patient_builder::kMirrorLabels           ? tr("Mirror the labels and import")
+                     : option == patient_builder::kMirrorBoth           ? tr("Mirror CT and labels and import")
+                     : option.starts_with(patient_builder::kUsePosture) ? tr("Import with this posture")
+                                                                        : tr("Use those numbers and import"));
     repair_->setToolTip(shown(option));
   }
 
   void repair() {
     if (!open_finding_) return;
     const std::string option = open_finding_->repair;
-    if (option == anatomy::kMirrorLabels) mirroring_ = io::Mirroring::kLabels;
-    if (option == anatomy::kMirrorBoth) mirroring_ = io::Mirroring::kBoth;
-    if (option.starts_with(anatomy::kUseLabelMap))
-      map_->setCurrentText(to_qt(option.substr(std::string_view(anatomy::kUseLabelMap).size())));
-    if (option.starts_with(anatomy::kUsePosture))
+    if (option == patient_builder::kMirrorLabels) mirroring_ = io::Mirroring::kLabels;
+    if (option == patient_builder::kMirrorBoth) mirroring_ = io::Mirroring::kBoth;
+    if (option.starts_with(patient_builder::kUseLabelMap))
+      map_->setCurrentText(to_qt(option.substr(std::string_view(patient_builder::kUseLabelMap).size())));
+    if (option.starts_with(patient_builder::kUsePosture))
       posture_->setCurrentIndex(
-          posture_->findData(to_qt(option.substr(std::string_view(anatomy::kUsePosture).size()))));
+          posture_->findData(to_qt(option.substr(std::string_view(patient_builder::kUsePosture).size()))));
     start();
   }
 
@@ -261,7 +261,7 @@ class ImportPanel final : public CasePanel {
     request.posture = *anatomy::find_posture(to_std(posture_->currentData().toString()));
     request.sibling_series = sibling_->isChecked();
     request.confirmed = confirmed_;
-    request.findings = findings_ = std::make_shared<std::vector<anatomy::AnatomyFinding>>();
+    request.findings = findings_ = std::make_shared<std::vector<patient_builder::AnatomyFinding>>();
     request.ct = to_std(ct_->text().trimmed());
     labels_of_ = ct_->text().trimmed();
     for (const QString& path : labels_->text().split(QLatin1Char(';')))
@@ -316,8 +316,9 @@ class ImportPanel final : public CasePanel {
   QLabel* finding_ = nullptr;
   QPushButton* repair_ = nullptr;
   QPushButton* confirm_ = nullptr;
-  std::shared_ptr<std::vector<anatomy::AnatomyFinding>> findings_;  ///< Of the last import; read when it has ended.
-  std::optional<anatomy::AnatomyFinding> open_finding_;             ///< The one that is displayed.
+  std::shared_ptr<std::vector<patient_builder::AnatomyFinding>>
+      findings_;                                                 ///< Of the last import; read when it has ended.
+  std::optional<patient_builder::AnatomyFinding> open_finding_;  ///< The one that is displayed.
   std::vector<std::string> confirmed_;
   io::Mirroring mirroring_ = io::Mirroring::kNone;
   QString imported_;                                             ///< The three fields of the last import, a line each.

@@ -13,6 +13,7 @@
 #include <map>
 #include <set>
 
+#include "anatomy/label_statistics.h"
 #include "anatomy/structure_words.h"
 #include "case_builder/case_edits.h"
 #include "case_panels/case_panel.h"

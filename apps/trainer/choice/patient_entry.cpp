@@ -3,11 +3,11 @@
 #include <QCoreApplication>
 #include <algorithm>
 
-#include "anatomy/phantom/phantom.h"
 #include "cases/prepare_case.h"
 #include "core/files/folders.h"
 #include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
+#include "phantom/phantom.h"
 #include "tasks/task.h"
 #include "ui_kit/window_language.h"
 
@@ -39,7 +39,7 @@ QString own_task_title(const std::string& folder) {
 std::vector<PatientEntry> embedded_entries(const QString& task, const QString& task_title) {
   std::vector<PatientEntry> entries;
   const std::string name = task.toStdString();
-  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients()) {
+  for (const phantom::PhantomInfo& info : phantom::embedded_patients()) {
     if (std::find(info.tasks.begin(), info.tasks.end(), name) == info.tasks.end()) continue;
     entries.push_back({from_std(info.name), from_std(info.name), task_title, shown(info.description),
                        shown(info.briefing), thumbnail_of(info.name), info.difficulty});

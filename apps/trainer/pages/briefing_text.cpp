@@ -8,13 +8,13 @@
 #include <map>
 #include <span>
 
-#include "anatomy/phantom/phantom.h"
 #include "anatomy/structure_words.h"
 #include "attempt/live/live_attempt.h"
 #include "attempt/servers/haptic_servers.h"
 #include "attempt/servers/server_host.h"
 #include "choice/patient_entry.h"
 #include "panels/action_buttons.h"
+#include "phantom/phantom.h"
 #include "scoring/score.h"
 #include "tasks/fit_to_patient.h"
 #include "ui_kit/parts.h"
@@ -37,17 +37,11 @@ QString words(const std::string& name) {
   return escaped(anatomy::structure_words(name));
 }
 
-const anatomy::PhantomInfo* find_info(const std::string& name) {
-  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients())
-    if (info.name == name) return &info;
-  return nullptr;
-}
-
 QString not_stated() {
   return QStringLiteral("<span style='color:%1'>%2</span>").arg(theme().dim.name(), BriefingText::tr("not stated"));
 }
 
-QString person_text(const std::string& name, const anatomy::Referral& referral) {
+QString person_text(const std::string& name, const phantom::Referral& referral) {
   const double height_m = 0.01 * referral.height_cm;
   return BriefingText::tr("<b>%1</b>, %2, %3 years, %4 cm, %5 kg (BMI %6)")
       .arg(escaped(name), referral.is_female ? BriefingText::tr("female") : BriefingText::tr("male"))
@@ -285,16 +279,16 @@ bool is_lesion_task(const tasks::Task& task) {
 }
 
 std::vector<BriefingRow> referral_rows(const TrainerChoice& choice) {
-  const anatomy::PhantomInfo* info = find_info(choice.patient);
-  if (info != nullptr && info->referral) {
-    const anatomy::Referral& referral = *info->referral;
+  const std::optional<phantom::PhantomInfo> info = phantom::find_embedded_patient(choice.patient);
+  if (info && info->referral) {
+    const phantom::Referral& referral = *info->referral;
     return {{BriefingText::tr("Patient"), person_text(info->name, referral)},
             {BriefingText::tr("Indication"), escaped(referral.indication)},
             {BriefingText::tr("Coagulation"), escaped(referral.coagulation)},
             {BriefingText::tr("Allergies"), escaped(referral.allergies)},
             {BriefingText::tr("Posture"), escaped(std::string(posture_words(referral.posture)))}};
   }
-  const PatientEntry entry = info != nullptr ? PatientEntry{{}, to_qt(info->name), {}, shown(info->description), {}, {}}
+  const PatientEntry entry = info ? PatientEntry{{}, to_qt(info->name), {}, shown(info->description), {}, {}}
                                              : folder_entry(to_qt(choice.patient));
   return {
       {BriefingText::tr("Patient"), QStringLiteral("<b>%1</b>").arg(entry.name.toHtmlEscaped())},
@@ -306,8 +300,8 @@ std::vector<BriefingRow> referral_rows(const TrainerChoice& choice) {
 
 std::vector<BriefingRow> finding_rows(const cases::Case& the_case) {
   std::vector<BriefingRow> rows;
-  const anatomy::PhantomInfo* info = find_info(the_case.patient->name);
-  if (info == nullptr || !info->referral)
+  const std::optional<phantom::PhantomInfo> info = phantom::find_embedded_patient(the_case.patient->name);
+  if (!info || !info->referral)
     rows.push_back({BriefingText::tr("Posture"),
                     escaped(std::string(posture_words(tasks::posture_of(the_case.task, *the_case.patient))))});
   if (!is_lesion_task(the_case.task)) return rows;

@@ -215,7 +215,7 @@ void CaseViews::refresh_fusion() {
   SliceView::Overlay overlay;
   if (is_ultrasound_shown_ && pose && fusion_.kind != slices::FusionKind::kOff)
     overlay = [ultrasound = editor_.draft().ultrasound, pose = *pose, style = fusion_](const volume::SlicePlane& plane,
-                                                                                       volume::RgbImage& picture) {
+                                                                                       image::RgbImage& picture) {
       slices::fuse_ultrasound({ultrasound->gray_U, ultrasound->imaged_U, ultrasound->white, pose}, plane, style,
                               picture);
     };

@@ -20,7 +20,7 @@
 #include "pages/next_exercise_card.h"
 #include "pages/patient_cards.h"
 #include "pages/person_bar.h"
-#include "panels/device_choice.h"
+#include "panels/devices/device_choice.h"
 #include "tasks/fit_to_patient.h"
 #include "tasks/needle.h"
 #include "tasks/task.h"

@@ -5,7 +5,6 @@
 #include <QSettings>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace trocar::trainer {
 namespace {
@@ -57,7 +56,7 @@ void save_mirror_settings(const MirrorSettings& mirror) {
 }
 
 scene::CameraView mirror_camera_W(const MirrorSettings& settings, const ViewPlace& place) noexcept {
-  const double tilt_rad = settings.tilt_deg * std::numbers::pi / 180.0;
+  const double tilt_rad = radians(settings.tilt_deg);
   const Vec3 right_W = Vec3::UnitX();
   const Vec3 up_W(0.0, std::sin(tilt_rad), std::cos(tilt_rad));
   const Vec3 towards_eye_W = right_W.cross(up_W);

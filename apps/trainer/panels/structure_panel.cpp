@@ -42,7 +42,7 @@ QString shown_name(const std::string& structure) {
 }
 
 /// A disc in the structure's colour; a ring if it is hidden.
-QIcon swatch_icon(const volume::Rgb& color, double ratio) {
+QIcon swatch_icon(const image::Rgb& color, double ratio) {
   QIcon icon;
   for (const bool is_shown : {true, false}) {
     QPixmap pixmap(qRound(kSwatch * ratio), qRound(kSwatch * ratio));

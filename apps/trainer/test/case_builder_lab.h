@@ -17,11 +17,11 @@
 #include <memory>
 #include <string>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
 #include "core/files/output_file.h"
 #include "io/image/image_file.h"
 #include "pages/case_page.h"
+#include "phantom/phantom.h"
 #include "ui_kit/parts.h"
 #include "views/slices/slice_view.h"
 
@@ -30,7 +30,7 @@ namespace trocar::trainer {
 /// A small made patient as an instructor gets patients: a CT and a segmentation with a list of names. `reachable_P`: a
 /// target with a safe path to it.
 inline void write_case_files(const std::filesystem::path& folder, Vec3& reachable_P) {
-  const auto patient = anatomy::generate_phantom("abdomen", 1, {{144, 116, 104}});
+  const auto patient = phantom::generate_phantom("abdomen", 1, {{144, 116, 104}});
   ASSERT_TRUE(patient) << patient.error().text();
   reachable_P = patient->paths.front().line_P.b;
   volume::LabelGrid labels = patient->labels;

@@ -22,7 +22,6 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "anatomy/phantom/phantom.h"
 #include "case_builder/case_edits.h"
 #include "cases/prepare_case.h"
 #include "core/files/folders.h"
@@ -30,6 +29,7 @@
 #include "core/testing/test_data.h"
 #include "io/image/image_file.h"
 #include "io/patient/patient_folder.h"
+#include "phantom/phantom.h"
 #include "test/case_builder_lab.h"
 #include "test/widget_actions.h"
 #include "ui_kit/parts.h"

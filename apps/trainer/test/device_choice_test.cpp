@@ -1,4 +1,4 @@
-#include "panels/device_choice.h"
+#include "panels/devices/device_choice.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <QTemporaryDir>
 
 #include "devices/testing/hd_stand_ins.h"
-#include "panels/device_test_dialog.h"
+#include "panels/devices/device_test_dialog.h"
 
 namespace trocar::trainer {
 namespace {

@@ -9,10 +9,10 @@
 #include <fstream>
 #include <set>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
 #include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
+#include "phantom/phantom.h"
 #include "test/widget_actions.h"
 #include "ui_kit/parts.h"
 #include "ui_kit/theme.h"
@@ -184,7 +184,7 @@ TEST(PatientEntry, ListsEmbeddedPatientsByDifficulty) {
 
 TEST(PatientEntry, FolderEntryHasItsThumbnail) {
   const trocar::TemporaryFolder cases;
-  auto patient = anatomy::generate_phantom("layers-liver", 1);
+  auto patient = phantom::generate_phantom("layers-liver", 1);
   ASSERT_TRUE(patient) << patient.error().text();
   const auto at = cases / "case-7";
   ASSERT_TRUE(io::save_patient(*patient, {}, at, {}, {{io::kThumbnailFile, "bytes"}}));

@@ -14,9 +14,9 @@
 #include <QTemporaryDir>
 #include <filesystem>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
 #include "io/patient/patient_folder.h"
+#include "phantom/phantom.h"
 #include "test/widget_actions.h"
 #include "ui_kit/parts.h"
 
@@ -173,7 +173,7 @@ TEST_F(StartPageTest, OffersNeedlesThatFitTheTask) {
 
 TEST_F(StartPageTest, ListsAFolderByItsCaseName) {
   const trocar::TemporaryFolder cases;
-  const auto patient = anatomy::generate_phantom("layers-liver", 1);
+  const auto patient = phantom::generate_phantom("layers-liver", 1);
   ASSERT_TRUE(patient) << patient.error().text();
   anatomy::VirtualPatient named = *patient;
   named.name = "A lesion under the ribs";

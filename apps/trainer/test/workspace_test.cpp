@@ -38,7 +38,7 @@ TEST(Workspace, ShowsThePlanPerHelpLevel) {
   const anatomy::Label* target = anatomy::find_label(
       *the_case.patient, the_case.plan.line_P.b + the_case.needle.notch_middle_mm() * the_case.plan.line_P.direction());
   ASSERT_NE(target, nullptr);
-  const volume::Rgb& green = target->color;
+  const image::Rgb& green = target->color;
   const QColor lesion(green[0], green[1], green[2]);
   auto* lesion_eye = workspace.findChild<QToolButton*>(QStringLiteral("structure-eye-liver-lesion-1"));
   ASSERT_NE(lesion_eye, nullptr);

@@ -6,6 +6,7 @@
 
 #include "core/files/folders.h"
 #include "core/testing/allocation_guard.h"
+#include "haptics/scene_options.h"
 #include "haptics/test/layered_patient.h"
 #include "lab/haptics/push_trial.h"
 #include "lab/haptics/stability_trial.h"
@@ -19,13 +20,13 @@ using testing::liver_way;
 using testing::paper_tissues;
 using testing::Slab;
 
-DevicePreset device(const char* name) {
-  auto preset = load_device_preset(data_dir() / "devices.toml", name);
+stylus::DevicePreset device(const char* name) {
+  auto preset = stylus::load_device_preset(data_dir() / "devices.toml", name);
   TROCAR_CHECK(preset.has_value());
   return *preset;
 }
 
-std::shared_ptr<const HapticScene> scene_for(const DevicePreset& preset, const std::vector<Slab>& slabs) {
+std::shared_ptr<const HapticScene> scene_for(const stylus::DevicePreset& preset, const std::vector<Slab>& slabs) {
   HapticOptions options;
   apply_device_preset(preset, options);
   auto scene = make_haptic_scene(layered_patient(slabs), paper_tissues(), {}, preset.capability, options);
@@ -36,7 +37,7 @@ std::shared_ptr<const HapticScene> scene_for(const DevicePreset& preset, const s
 class RestInTheHand : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(RestInTheHand, IsReachedWithoutEnergyGrowth) {
-  const DevicePreset preset = device(GetParam());
+  const stylus::DevicePreset preset = device(GetParam());
   const auto scene = scene_for(preset, liver_way());
   for (const Holder holder : {Holder::kHand, Holder::kGuidingHand}) {
     for (const double depth_mm : {0.5, 8.0, 12.5, 24.5, 50.0}) {
@@ -53,7 +54,7 @@ TEST_P(RestInTheHand, IsReachedWithoutEnergyGrowth) {
 INSTANTIATE_TEST_SUITE_P(Devices, RestInTheHand, ::testing::Values("premium", "omni", "omega6", "sigma7", "falcon"));
 
 TEST(Rest, IsReachedByABareMassOnThePath) {
-  const DevicePreset preset = device("omega6");
+  const stylus::DevicePreset preset = device("omega6");
   const auto scene = scene_for(preset, liver_way());
   for (const Holder holder : {Holder::kBare45g, Holder::kBare150g}) {
     const StabilityOutcome outcome = run_stability_trial(scene, preset, holder, {50.0, 6.0});
@@ -62,7 +63,7 @@ TEST(Rest, IsReachedByABareMassOnThePath) {
 }
 
 TEST(PassivityObserver, ExcludesWorkAgainstTheCompensatedWeight) {
-  const DevicePreset preset = device("premium");
+  const stylus::DevicePreset preset = device("premium");
   ClosedLoop loop(scene_for(preset, liver_way()), preset, Holder::kBare150g);
   for (int i = 0; i < 10; ++i) loop.carry({0.0, 0.0, -40.0}, Vec3::UnitZ());
   loop.restart_observer();
@@ -70,7 +71,7 @@ TEST(PassivityObserver, ExcludesWorkAgainstTheCompensatedWeight) {
   double risen_mm = 0.0;
   for (int i = 0; i < 200; ++i) {
     const Vec3 before_P = loop.tip_P();
-    loop.run(StylusHold{});
+    loop.run(stylus::StylusHold{});
     risen_mm = std::max(risen_mm, (loop.tip_P() - before_P).norm());
   }
   EXPECT_GT(risen_mm, 0.05) << "it moves";
@@ -81,7 +82,7 @@ TEST(PassivityObserver, ExcludesWorkAgainstTheCompensatedWeight) {
 class RestOnThePath : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(RestOnThePath, IsReachedByABareMassOnADeviceWithTorque) {
-  const DevicePreset preset = device(GetParam());
+  const stylus::DevicePreset preset = device(GetParam());
   ASSERT_TRUE(preset.has_torque());
   const auto scene = scene_for(preset, liver_way());
   for (const Holder holder : {Holder::kBare45g, Holder::kBare150g}) {
@@ -92,10 +93,10 @@ TEST_P(RestOnThePath, IsReachedByABareMassOnADeviceWithTorque) {
 INSTANTIATE_TEST_SUITE_P(Devices, RestOnThePath, ::testing::Values("premium", "sigma7", "delta6"));
 
 TEST(ClosedSkin, YieldsToTheProxyAtAnyEncoderCount) {
-  const auto presets = load_device_presets(data_dir() / "devices.toml");
+  const auto presets = stylus::load_device_presets(data_dir() / "devices.toml");
   const auto table = anatomy::load_tissue_table(data_dir() / "tissues.toml");
   ASSERT_TRUE(presets && table);
-  for (const DevicePreset& preset : *presets) {  // some tell a tip that lies just on the skin
+  for (const stylus::DevicePreset& preset : *presets) {  // some tell a tip that lies just on the skin
     HapticOptions options;
     options.force_model = ForceModel::kProxy;
     apply_device_preset(preset, options);
@@ -108,7 +109,7 @@ TEST(ClosedSkin, YieldsToTheProxyAtAnyEncoderCount) {
 }
 
 TEST(StabilityTrial, DetectsATooStiffLoop) {
-  DevicePreset preset = device("omega6");
+  stylus::DevicePreset preset = device("omega6");
   preset.coupling = {5.0, 0.0};  // what the device bears, and no damping: the delay feeds the spring
   const StabilityOutcome outcome =
       run_stability_trial(scene_for(preset, liver_way()), preset, Holder::kBare45g, {50.0, 3.0});
@@ -116,10 +117,10 @@ TEST(StabilityTrial, DetectsATooStiffLoop) {
 }
 
 TEST(ClosedLoopWithStylus, NeverAllocates) {
-  const DevicePreset preset = device("premium");
+  const stylus::DevicePreset preset = device("premium");
   ClosedLoop loop(scene_for(preset, liver_way()), preset, Holder::kHand);
   loop.carry({0, 0, -5}, Vec3::UnitZ());
-  StylusHold hold = make_hand();
+  stylus::StylusHold hold = stylus::make_hand();
   std::size_t events = 0;
   for (int i = 0; i < 3000; ++i) {
     hold.X_PS = Pose::translation({0.0, 0.0, -155.0 + 0.01 * i});
@@ -131,7 +132,7 @@ TEST(ClosedLoopWithStylus, NeverAllocates) {
 }
 
 TEST(ClosedLoopWithStylus, DelaysTheWrenchByOneTick) {
-  const DevicePreset preset = device("omega6");
+  const stylus::DevicePreset preset = device("omega6");
   ClosedLoop loop(scene_for(preset, liver_way()), preset, Holder::kBare45g);
   loop.run({});  // nothing has been computed yet: falls
   const double falling = loop.stylus().v_P.y();
@@ -143,7 +144,7 @@ TEST(ClosedLoopWithStylus, DelaysTheWrenchByOneTick) {
 }
 
 TEST(BoneContact, IsTheCouplingInSeriesWithTheBone) {
-  const DevicePreset preset = device("premium");
+  const stylus::DevicePreset preset = device("premium");
   PushTrial trial;
   trial.to_mm = 20.0;
   const auto samples = run_push_trial(scene_for(preset, {{0, testing::kFat}, {12, testing::kBone}}), preset, trial);
@@ -160,7 +161,7 @@ TEST(BoneContact, IsTheCouplingInSeriesWithTheBone) {
 }
 
 TEST(LossOfResistance, OccursAtAPuncturedLayer) {
-  const DevicePreset preset = device("omega6");
+  const stylus::DevicePreset preset = device("omega6");
   PushTrial trial;
   trial.to_mm = 30.0;
   const auto samples = run_push_trial(scene_for(preset, {{0, testing::kFat}, {12, testing::kMuscle}}), preset, trial);

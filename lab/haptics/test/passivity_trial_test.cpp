@@ -29,7 +29,7 @@ HapticOptions options_for(ForceModel model, Tool tool = Tool::kNeedle) {
 
 std::shared_ptr<const HapticScene> passive_scene(const HapticOptions& options,
                                                  const anatomy::TissueTable& tissues = paper_tissues(),
-                                                 const DeviceCapability& device = {}) {
+                                                 const stylus::DeviceCapability& device = {}) {
   auto scene = make_haptic_scene(layered_patient(liver_way()), tissues, {}, device, options);
   TROCAR_CHECK(scene.has_value());
   return *scene;
@@ -84,7 +84,7 @@ TEST(PassivityTrial, CountsGeneratedEnergy) {
   anatomy::TissueTable tissues = paper_tissues();
   HapticOptions options = options_for(ForceModel::kCombined);
   remove_losses(tissues, options);
-  DeviceCapability device;
+  stylus::DeviceCapability device;
   device.peak_torque_nmm = 0.0;
   const auto scene = passive_scene(options, tissues, device);
   ClosedMotion before(over_skin(), 0.0);

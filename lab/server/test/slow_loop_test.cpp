@@ -25,7 +25,7 @@ class SlowLoop : public ::testing::TestWithParam<std::string> {
     trial.slow_ms = slow_ms;
     return run_slow_loop_trial(scene, preset, trial);
   }
-  haptics::CouplingParams coupling() const {
+  stylus::CouplingParams coupling() const {
     const double scale = preset.force_scale * preset.motion_scale;
     return {scale * preset.coupling.stiffness_n_per_mm, scale * preset.coupling.damping_ns_per_mm};
   }
@@ -36,7 +36,7 @@ class SlowLoop : public ::testing::TestWithParam<std::string> {
     return trocar::haptics::permitted_share(coupling(), period_s, haptics::gate_params(preset));
   }
 
-  haptics::DevicePreset preset;
+  stylus::DevicePreset preset;
   SceneBuilder builder;
   ServoScene scene;
 };
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(EveryDevice, SlowLoop,
 
 /// The list above is that of the file.
 TEST(SlowLoops, CoverEveryDevice) {
-  const auto presets = haptics::load_device_presets(testing::data_file("devices.toml"));
+  const auto presets = stylus::load_device_presets(testing::data_file("devices.toml"));
   ASSERT_TRUE(presets);
   EXPECT_EQ(presets->size(), 12U) << "a new row of data/devices.toml belongs into EveryDevice";
 }

@@ -78,9 +78,9 @@ Result<std::unique_ptr<HapticDevice>> open_device(const DeviceSpec& spec, const 
   return std::make_unique<FaultyDevice>(std::move(device), options.faults, kFaultSeed);
 }
 
-Result<haptics::DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own) {
-  return haptics::load_device_preset(options.devices_file,
-                                     options.preset.empty() ? own : std::string_view(options.preset));
+Result<stylus::DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own) {
+  return stylus::load_device_preset(options.devices_file,
+                                    options.preset.empty() ? own : std::string_view(options.preset));
 }
 
 }  // namespace trocar::devices

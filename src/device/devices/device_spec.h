@@ -33,7 +33,7 @@ struct DeviceOptions {
   /// The device is in its calibration position (stylus in the inkwell, arm in the reset position) and is calibrated
   /// while it is opened. Only for "openhaptics".
   bool is_calibrating = false;
-  std::filesystem::path stylus_folder;  ///< Weights that users saved (devices/stylus_profile.h); empty: none are used.
+  std::filesystem::path stylus_folder;  ///< Weights that users saved (devices/workspace_map.h); empty: none are used.
 };
 
 /// Opens the device. Errors state what is missing: vendor library, device, or service.

@@ -6,7 +6,7 @@
 #include "core/result.h"
 #include "geometry/pose.h"
 #include "geometry/vec.h"
-#include "haptics/coupling/device_preset.h"
+#include "stylus/device_preset.h"
 
 namespace trocar::devices {
 
@@ -57,7 +57,7 @@ class HapticDevice {
   HapticDevice& operator=(const HapticDevice&) = delete;
 
   /// Limits of the device: from data/devices.toml, lowered to the values that the device reports. Constant while open.
-  virtual const haptics::DevicePreset& preset() const noexcept = 0;
+  virtual const stylus::DevicePreset& preset() const noexcept = 0;
   /// Name for messages and records, for example "virtual:premium".
   virtual std::string name() const = 0;
   /// Reads the present pose. `now_s`: time of the steady clock (s). Real-time safe.

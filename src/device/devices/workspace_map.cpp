@@ -10,7 +10,6 @@
 #include "config/toml_writer.h"
 #include "core/files/output_file.h"
 #include "devices/haptic_device.h"
-#include "haptics/gate/gate_params.h"
 
 namespace trocar::devices {
 namespace {
@@ -30,7 +29,7 @@ void release(WorkspaceState& state, double motion_scale, const Pose& X_DS) noexc
 
 }  // namespace
 
-WorkspaceParams workspace_params(const haptics::DevicePreset& preset) noexcept {
+WorkspaceParams workspace_params(const stylus::DevicePreset& preset) noexcept {
   WorkspaceParams params{preset.X_WD, preset.motion_scale, preset.force_scale, 0};
   if (preset.clutch_button == 1) params.clutch = kButtonMain;
   if (preset.clutch_button == 2) params.clutch = kButtonSecond;
@@ -161,8 +160,8 @@ Result<std::optional<StylusProfile>> load_stylus_profile(const fs::path& folder,
   return *std::move(profile);
 }
 
-Result<haptics::DevicePreset> with_stylus_profile(haptics::DevicePreset preset, const fs::path& folder,
-                                                  const std::string& device) {
+Result<stylus::DevicePreset> with_stylus_profile(stylus::DevicePreset preset, const fs::path& folder,
+                                                 const std::string& device) {
   if (folder.empty()) return preset;
   TROCAR_TRY(const std::optional<StylusProfile> profile, load_stylus_profile(folder, device));
   if (!profile) return preset;
@@ -171,7 +170,7 @@ Result<haptics::DevicePreset> with_stylus_profile(haptics::DevicePreset preset, 
     return fail(fmt::format("the saved weight was measured with the preset \"{}\", and the device has \"{}\"",
                             profile->preset, preset.name),
                 file, kWeighAgain);
-  const double most_n = haptics::gate_params(preset).continuous_force_n;
+  const double most_n = stylus::continuous_force_n(preset);
   if (profile->weight_n > most_n)
     return fail(
         fmt::format("stylus_weight_n is {}, and the device can hold {:.2f} N for long", profile->weight_n, most_n),

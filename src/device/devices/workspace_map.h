@@ -8,7 +8,7 @@
 #include "core/result.h"
 #include "geometry/pose.h"
 #include "geometry/vec.h"
-#include "haptics/coupling/device_preset.h"
+#include "stylus/device_preset.h"
 
 namespace trocar::devices {
 
@@ -21,7 +21,7 @@ struct WorkspaceParams {
                               ///< 0: none.
 };
 /// Workspace parameters of a preset from data/devices.toml.
-WorkspaceParams workspace_params(const haptics::DevicePreset& preset) noexcept;
+WorkspaceParams workspace_params(const stylus::DevicePreset& preset) noexcept;
 
 /// State of the clutch. The clutch moves the base and rotates the tool in the hand. It never rotates the base, so that
 /// the vertical and the directions of forces are kept.
@@ -75,7 +75,7 @@ Result<std::optional<StylusProfile>> load_stylus_profile(const std::filesystem::
                                                          const std::string& device);
 /// The preset with the weight of the device's profile, unchanged without a profile or with an empty `folder`. Errors:
 /// those of load_stylus_profile, a profile of another preset, a weight above the device's continuous force.
-Result<haptics::DevicePreset> with_stylus_profile(haptics::DevicePreset preset, const std::filesystem::path& folder,
-                                                  const std::string& device);
+Result<stylus::DevicePreset> with_stylus_profile(stylus::DevicePreset preset, const std::filesystem::path& folder,
+                                                 const std::string& device);
 
 }  // namespace trocar::devices

@@ -100,7 +100,7 @@ struct LoadScene {
   Pose X_PW;  ///< Room in the patient.
 };
 
-/// A value of the tissue table; anatomy/tissue/tissue_setting.h has rows, keys and ranges.
+/// A value of the tissue table; anatomy/tissue/tissue_settings.h has rows, keys and ranges.
 struct TissueSetting {
   std::string row, key;         ///< "liver", "k"
   std::optional<double> value;  ///< Empty: the tissue never yields.

@@ -35,8 +35,8 @@ struct Received {
 
 /// The server's side of the link: an own implementation of a ZMTP 3 ROUTER, for kMostControllers clients that request
 /// control and kMostWatchers that do not. One thread uses it. It never blocks on a client: batches that a client does
-/// not read in time are counted and dropped. Memory, connections and rates are bounded (link/limits.h) for any input of
-/// clients.
+/// not read in time are counted and dropped. Memory, connections and rates are bounded (link/messages.h) for any input
+/// of clients.
 class ServerSocket {
  public:
   /// Binds to `endpoint`. Errors: tcp:// without security (exit status 2), address in use, no such folder.

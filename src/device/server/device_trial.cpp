@@ -7,9 +7,8 @@
 #include <numbers>
 
 #include "core/result.h"
-#include "haptics/closed_loop/rotation.h"
-#include "haptics/coupling/virtual_stylus.h"
 #include "haptics/gate/gate_params.h"
+#include "stylus/virtual_stylus.h"
 
 namespace trocar::server {
 namespace {
@@ -20,14 +19,14 @@ constexpr double kShownPush_n = 3.0;  ///< For a gamepad, half of its rumble.
 /// A trial has no stiff spring; more damping of single encoder counts would be felt as clicks. [assumed]
 constexpr double kMostDamping_ns_per_mm = 0.005;
 
-haptics::GateParams trial_gate(const haptics::DevicePreset& preset, double rate_hz) noexcept {
+haptics::GateParams trial_gate(const stylus::DevicePreset& preset, double rate_hz) noexcept {
   haptics::GateParams params = haptics::gate_params(preset);
   params.period_s = 1.0 / rate_hz;
   params.max_damping_ns_per_mm = std::min(params.max_damping_ns_per_mm, kMostDamping_ns_per_mm);
   return params;
 }
 
-double push_of(const haptics::DevicePreset& preset, const haptics::GateParams& gate) noexcept {
+double push_of(const stylus::DevicePreset& preset, const haptics::GateParams& gate) noexcept {
   return preset.has_force() ? std::min(kMostPush_n, kShare * gate.continuous_force_n) : kShownPush_n;
 }
 
@@ -69,7 +68,7 @@ haptics::GateInput DeviceTrial::sense(const devices::DeviceReading& now, double 
   if (is_fresh && now.X_DS.is_finite()) {
     if (last_X_DS_) {
       input.v_mm_per_s = (now.X_DS.p() - last_X_DS_->p()) / since_fresh_s;
-      input.w_rad_per_s = haptics::rotation_vector(now.X_DS.R() * last_X_DS_->R().transpose()) / since_fresh_s;
+      input.w_rad_per_s = rotation_vector(now.X_DS.R() * last_X_DS_->R().transpose()) / since_fresh_s;
     }
     last_X_DS_ = now.X_DS;
   }
@@ -104,7 +103,7 @@ void DeviceTrial::move_simulated_hand(double now_s) noexcept {
   if (!placed_X_DS_ || device_.is_in_real_hand()) return;
   const bool is_held = weighing_.needs_hand();
   if (is_held && (is_placed_ || state_.mode != telemetry::GateMode::kOff)) return;
-  const haptics::StylusHold made = haptics::make_hand();
+  const stylus::StylusHold made = stylus::make_hand();
   devices::DeviceHand hand;
   hand.X_DS = *placed_X_DS_;
   hand.time_s = now_s;
@@ -195,8 +194,8 @@ Error weigh_error(const WeighResult& result, const std::string& device) {
   return {refusal.what, device, refusal.advice};
 }
 
-std::string weigh_text(const WeighResult& result, const haptics::DevicePreset& preset) {
-  const haptics::DeviceCapability& device = preset.capability;
+std::string weigh_text(const WeighResult& result, const stylus::DevicePreset& preset) {
+  const stylus::DeviceCapability& device = preset.capability;
   std::string text = fmt::format("The stylus weighs {:.2f} N (preset: {:.2f} N); friction {:.2f} N.", result.weight_n,
                                  device.stylus_weight_n, result.friction_n);
   if (result.lever_mm)

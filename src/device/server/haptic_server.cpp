@@ -18,7 +18,7 @@ constexpr double kNsPerS = 1e9;
 constexpr std::chrono::milliseconds kLoadPatience{300};  ///< Wait for a step of loading at the end of the server.
 
 link::Welcome make_welcome(const devices::HapticDevice& device, const std::string& tool, double force_scale) {
-  const haptics::DevicePreset& preset = device.preset();
+  const stylus::DevicePreset& preset = device.preset();
   link::Welcome welcome;
   welcome.server = fmt::format("trocar-hapticd {}", kVersion);
   welcome.tool = tool;

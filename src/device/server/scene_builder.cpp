@@ -7,7 +7,8 @@
 #include <new>
 
 #include "anatomy/tissue/tissue_settings.h"
-#include "haptics/coupling/device_preset.h"
+#include "haptics/scene_options.h"
+#include "stylus/device_preset.h"
 
 namespace trocar::server {
 namespace {
@@ -29,7 +30,7 @@ Status apply_options(const link::SetParameters& request, haptics::HapticOptions&
   if (!request.force_model.empty()) {
     TROCAR_TRY(options.force_model, haptics::parse_force_model(request.force_model));
   }
-  haptics::CouplingParams& coupling = options.coupling;
+  stylus::CouplingParams& coupling = options.coupling;
   coupling.stiffness_n_per_mm = request.coupling_stiffness_n_per_mm.value_or(coupling.stiffness_n_per_mm);
   coupling.damping_ns_per_mm = request.coupling_damping_ns_per_mm.value_or(coupling.damping_ns_per_mm);
   options.has_bending = request.has_bending.value_or(options.has_bending);
@@ -53,7 +54,7 @@ Result<ServoScene> with_memory_checked(const std::string& patient, const Step& s
 
 }  // namespace
 
-SceneBuilder::SceneBuilder(PatientOpener open_patient, std::filesystem::path tissues_file, haptics::DevicePreset device)
+SceneBuilder::SceneBuilder(PatientOpener open_patient, std::filesystem::path tissues_file, stylus::DevicePreset device)
     : open_patient_(std::move(open_patient)), tissues_file_(std::move(tissues_file)), device_(std::move(device)) {}
 
 Result<std::shared_ptr<const anatomy::VirtualPatient>> SceneBuilder::patient_for(const link::LoadScene& request,
@@ -88,7 +89,7 @@ Result<SceneBuilder::Parts> SceneBuilder::parts_for(const link::LoadScene& reque
   parts.tissues = parts.loaded;
   haptics::apply_device_preset(device_, parts.options);
   parts.options.coupling =
-      haptics::within(parts.options.coupling, haptics::limits_of(device_));  // its scales may require a softer coupling
+      stylus::within(parts.options.coupling, stylus::limits_of(device_));  // its scales may require a softer coupling
   TROCAR_TRY(parts.options.tool, haptics::parse_tool(request.tool));
   TROCAR_TRY(parts.options.force_model, haptics::parse_force_model(request.force_model));
   parts.options.seed = request.seed;
@@ -101,9 +102,9 @@ Result<ServoScene> SceneBuilder::build(const link::LoadScene& request,
                                        bool continues) {
   haptics::HapticOptions options = parts.options;
   // The tick uses patient newtons and mm; the gate applies the device's own limits, after the scales.
-  const haptics::DeviceCapability capability = haptics::scene_capability(device_);
+  const stylus::DeviceCapability capability = stylus::scene_capability(device_);
   const double stiffest = capability.max_stiffness_n_per_mm;
-  TROCAR_TRY_STATUS(check(options.coupling, haptics::limits_of(device_)));
+  TROCAR_TRY_STATUS(check(options.coupling, stylus::limits_of(device_)));
   options.constraint.force_n = std::min(options.constraint.force_n, stiffest * options.constraint.linear_mm);
   TROCAR_TRY(auto built, haptics::make_haptic_scene(patient, parts.tissues, needle_of(request), capability, options));
   auto scene = std::make_shared<haptics::HapticScene>(*built);

@@ -9,9 +9,9 @@
 #include "anatomy/patient.h"
 #include "core/progress.h"
 #include "core/result.h"
-#include "haptics/coupling/device_preset.h"
 #include "link/messages.h"
 #include "server/servo.h"
+#include "stylus/device_preset.h"
 
 namespace trocar::server {
 
@@ -23,7 +23,7 @@ using PatientOpener = std::function<Result<std::shared_ptr<const anatomy::Virtua
 /// Makes scenes for the servo. Only the control thread uses it. Keeps the patient of the last scene.
 class SceneBuilder {
  public:
-  SceneBuilder(PatientOpener open_patient, std::filesystem::path tissues_file, haptics::DevicePreset device);
+  SceneBuilder(PatientOpener open_patient, std::filesystem::path tissues_file, stylus::DevicePreset device);
 
   /// Builds a new scene. Errors: invalid patient, tissues, needle or options, not enough memory, or a requested stop
   /// (checked between the steps: tables, patient, scene). After an error the last scene is kept.
@@ -57,7 +57,7 @@ class SceneBuilder {
 
   PatientOpener open_patient_;
   std::filesystem::path tissues_file_;
-  haptics::DevicePreset device_;
+  stylus::DevicePreset device_;
   link::LoadScene request_;
   Parts parts_;
   std::shared_ptr<const anatomy::VirtualPatient> patient_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "devices/workspace_map.h"
-#include "haptics/closed_loop/rotation.h"
 #include "haptics/gate/gate_params.h"
 #include "telemetry/tick_sample.h"
 
@@ -35,14 +34,14 @@ std::optional<Vec3> to_entry_W(const haptics::HapticState& state, const haptics:
 }  // namespace
 
 /// Spring and damper at the device; zero if it has no force.
-haptics::CouplingParams Servo::coupling_in_device(const ServoScene* scene) const noexcept {
+stylus::CouplingParams Servo::coupling_in_device(const ServoScene* scene) const noexcept {
   if (scene == nullptr || !device_.preset().has_force()) return {0.0, 0.0};
   const double scale = params_.workspace.force_scale * params_.workspace.motion_scale;
-  const haptics::CouplingParams& coupling = scene->scene->options.coupling;
+  const stylus::CouplingParams& coupling = scene->scene->options.coupling;
   return {scale * coupling.stiffness_n_per_mm, scale * coupling.damping_ns_per_mm};
 }
 
-ServoParams servo_params(const haptics::DevicePreset& preset, double rate_hz) noexcept {
+ServoParams servo_params(const stylus::DevicePreset& preset, double rate_hz) noexcept {
   constexpr double kStuckShare = 0.15;
   ServoParams params;
   params.gate = haptics::gate_params(preset);
@@ -90,7 +89,7 @@ Servo::Sensed Servo::sense(const ServoInput& input) noexcept {
     if (const telemetry::GateFault stuck = watch_encoder(now, input.dt_s); stuck != telemetry::GateFault::kNone)
       sensed.fault = stuck;
     sensed.v_D = (now.X_DS.p() - last_.X_DS.p()) / since_fresh_s;
-    sensed.w_D = haptics::rotation_vector(now.X_DS.R() * last_.X_DS.R().transpose()) / since_fresh_s;
+    sensed.w_D = rotation_vector(now.X_DS.R() * last_.X_DS.R().transpose()) / since_fresh_s;
   }
   last_ = now;
   has_read_ = true;

@@ -31,7 +31,7 @@ struct ServoParams {
 
 /// Gate, calibration and scales of a device's preset; a stuck encoder is detected above 0.15 of its continuous force
 /// [assumed].
-ServoParams servo_params(const haptics::DevicePreset& preset, double rate_hz = 1000.0) noexcept;
+ServoParams servo_params(const stylus::DevicePreset& preset, double rate_hz = 1000.0) noexcept;
 
 /// Input of a period from the other threads.
 struct ServoInput {
@@ -94,7 +94,7 @@ class Servo {
   void reset(double pressed_mm = 0.0) noexcept;
   Wanted feel(const Sensed& sensed, const ServoInput& input, telemetry::TickSample& sample) noexcept;
   devices::DeviceHand hand_in_device(const link::HandTarget& target, const haptics::HapticScene& scene) const noexcept;
-  haptics::CouplingParams coupling_in_device(const ServoScene* scene) const noexcept;
+  stylus::CouplingParams coupling_in_device(const ServoScene* scene) const noexcept;
   void note_shape(const ServoInput& input, ServoRecord& record) noexcept;
   void note_gate(const haptics::GateOutput& output, const ServoInput& input, telemetry::TickSample& sample) noexcept;
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptics/closed_loop/rotation.h"
-
 namespace trocar::server {
 namespace {
 
@@ -29,7 +27,7 @@ constexpr double kLeastFollowed = 0.5;
 constexpr double kMostSpread_n = 0.1;  // a spring of 0.05 N/mm between the two seconds [assumed]
 constexpr double kZero_n = 0.02;       // smaller upward pulls are rounding
 
-detail::PoseHoldParams hold_params(const haptics::DevicePreset& preset, const haptics::GateParams& gate) noexcept {
+detail::PoseHoldParams hold_params(const stylus::DevicePreset& preset, const haptics::GateParams& gate) noexcept {
   detail::PoseHoldParams params;
   params.stiffness_n_per_mm = std::min(params.stiffness_n_per_mm, preset.coupling.stiffness_n_per_mm);
   params.damping_ns_per_mm = std::min(params.damping_ns_per_mm, preset.max_damping_ns_per_mm);
@@ -46,7 +44,7 @@ Vec3 turning_axis(const Pose& X_DS) noexcept {
 
 }  // namespace
 
-StylusWeighing::StylusWeighing(const haptics::DevicePreset& preset, const haptics::GateParams& gate) noexcept
+StylusWeighing::StylusWeighing(const stylus::DevicePreset& preset, const haptics::GateParams& gate) noexcept
     : device_(preset.capability),
       has_force_(preset.has_force()),
       continuous_n_(gate.continuous_force_n),
@@ -94,7 +92,7 @@ bool StylusWeighing::needs_hand() const noexcept {
          (phase_ == Phase::kSettling && phase_s_ < kHandOver_s);
 }
 
-haptics::CouplingParams StylusWeighing::coupling() const noexcept {
+stylus::CouplingParams StylusWeighing::coupling() const noexcept {
   return {params_.stiffness_n_per_mm, params_.damping_ns_per_mm};
 }
 
@@ -112,7 +110,7 @@ Pose StylusWeighing::target() const noexcept {
   const int leg = static_cast<int>(phase_s_ / kLeg_s);
   const double run = phase_s_ / kLeg_s - leg;
   const double share = leg % 2 == 0 ? run : 1.0 - run;
-  const Mat3 R = haptics::rotation_from_vector(share * kTilt_rad * turning_axis_) * start_X_DS_.R();
+  const Mat3 R = rotation_from_vector(share * kTilt_rad * turning_axis_) * start_X_DS_.R();
   return {R, start_X_DS_.p() + share * kWay_mm * Vec3::UnitZ()};
 }
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "haptics/coupling/device_preset.h"
 #include "haptics/gate/safety_gate.h"
 #include "server/detail/pose_hold.h"
+#include "stylus/device_preset.h"
 
 namespace trocar::server {
 
@@ -58,7 +58,7 @@ class StylusWeighing {
     bool is_wanted = false;
   };
 
-  StylusWeighing(const haptics::DevicePreset& preset, const haptics::GateParams& gate) noexcept;
+  StylusWeighing(const stylus::DevicePreset& preset, const haptics::GateParams& gate) noexcept;
 
   /// Starts; a device that cannot be weighed is refused at once.
   void start() noexcept;
@@ -70,7 +70,7 @@ class StylusWeighing {
   /// Result of a weighing that has ended, once.
   std::optional<WeighResult> take_result() noexcept;
   /// Spring and damper of the hold, for the gate.
-  haptics::CouplingParams coupling() const noexcept;
+  stylus::CouplingParams coupling() const noexcept;
 
  private:
   enum class Phase : std::uint8_t { kIdle, kClearing, kRising, kSettling, kMoving };
@@ -96,7 +96,7 @@ class StylusWeighing {
   WeighRefusal find_refusal(const WeighResult& result) const noexcept;
   std::optional<double> lever_mm(double weight_n) const noexcept;
 
-  const haptics::DeviceCapability device_;
+  const stylus::DeviceCapability device_;
   const bool has_force_;
   const double continuous_n_;
   const detail::PoseHoldParams params_;

@@ -17,7 +17,7 @@ struct Ink {
   std::uint32_t gray_share = 256;
 };
 
-Ink ink_of(const volume::Rgb& color, double opacity) {
+Ink ink_of(const image::Rgb& color, double opacity) {
   Ink ink;
   const auto share = static_cast<std::uint32_t>(std::lround(256.0 * std::clamp(opacity, 0.0, 1.0)));
   ink.gray_share = 256 - share;
@@ -42,8 +42,8 @@ Inks inks_of(const anatomy::LabelTable& table, const SliceStyle& style) {
   return inks;
 }
 
-volume::Rgb lay_over(std::uint8_t gray, const Ink& ink) {
-  volume::Rgb out;
+image::Rgb lay_over(std::uint8_t gray, const Ink& ink) {
+  image::Rgb out;
   for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>((gray * ink.gray_share + ink.color[c]) >> 8U);
   return out;
 }
@@ -55,7 +55,7 @@ struct LabelRow {
   const std::uint8_t* below;
 };
 
-void draw_row(const LabelRow& row, const std::uint8_t* gray, const Inks& inks, std::size_t columns, volume::Rgb* out) {
+void draw_row(const LabelRow& row, const std::uint8_t* gray, const Inks& inks, std::size_t columns, image::Rgb* out) {
   for (std::size_t u = 0; u < columns; ++u) {
     const std::uint8_t id = row.ids[u];
     if (!inks.is_drawn[id]) continue;
@@ -72,7 +72,7 @@ void hide_lesions(const anatomy::LabelTable& table, std::span<std::uint8_t> ids)
 }
 
 void draw_labels(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
-                 SliceBuffers& buffers, volume::RgbImage& picture, bool is_moved) {
+                 SliceBuffers& buffers, image::RgbImage& picture, bool is_moved) {
   // A row of "no label" precedes the first row and follows the last one.
   const auto columns = static_cast<std::size_t>(plane.columns);
   const auto rows = static_cast<std::size_t>(plane.rows);
@@ -99,7 +99,7 @@ bool is_drawn(const anatomy::Label& label) noexcept {
 }
 
 void paint_slice(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
-                 SliceBuffers& buffers, volume::RgbImage& picture, const motion::PatientMotion& motion) {
+                 SliceBuffers& buffers, image::RgbImage& picture, const motion::PatientMotion& motion) {
   constexpr float kAir_hu = -1024.0F;
   const std::size_t count = static_cast<std::size_t>(plane.columns) * static_cast<std::size_t>(plane.rows);
   picture.columns = plane.columns;
@@ -149,8 +149,8 @@ std::uint8_t to_byte(double value) {
 }
 
 /// The CT becomes darker as the ultrasound becomes stronger, so that their sum is not saturated.
-volume::Rgb blend(const volume::Rgb& ct, double us, double share) {
-  volume::Rgb out;
+image::Rgb blend(const image::Rgb& ct, double us, double share) {
+  image::Rgb out;
   for (std::size_t c = 0; c < 3; ++c) out[c] = to_byte((1.0 - share) * ct[c] + share * 1.4 * kOrange[c] * us);
   return out;
 }
@@ -158,7 +158,7 @@ volume::Rgb blend(const volume::Rgb& ct, double us, double share) {
 }  // namespace
 
 void fuse_ultrasound(const PlacedUltrasound& ultrasound, const volume::SlicePlane& plane, const FusionStyle& style,
-                     volume::RgbImage& picture) {
+                     image::RgbImage& picture) {
   TROCAR_CHECK(picture.columns == plane.columns && picture.rows == plane.rows);
   if (style.kind == FusionKind::kOff) return;
   const Pose X_UP = ultrasound.X_PU.inverse();
@@ -170,7 +170,7 @@ void fuse_ultrasound(const PlacedUltrasound& ultrasound, const volume::SlicePlan
       const Vec3 p_U = X_UP * p_P;
       if (volume::sample_nearest(ultrasound.imaged_U, p_U, std::uint8_t{0}) == 0) continue;
       const double us = std::min(255.0, 255.0 * volume::sample_linear(ultrasound.gray_U, p_U) / ultrasound.white);
-      volume::Rgb& pixel = picture.at(column, row);
+      image::Rgb& pixel = picture.at(column, row);
       if (style.kind == FusionKind::kBlend) {
         pixel = blend(pixel, us, share);
         continue;

@@ -8,9 +8,9 @@
 
 #include "anatomy/patient.h"
 #include "geometry/pose.h"
+#include "image/image.h"
 #include "motion/patient_motion.h"
 #include "volume/grid.h"
-#include "volume/image.h"
 #include "volume/sampling.h"
 
 namespace trocar::slices {
@@ -67,7 +67,7 @@ bool is_drawn(const anatomy::Label& label) noexcept;
 /// volume is air. The plane is in the patient now; `motion` tells where its tissue is at rest. Sets the image size to
 /// that of the plane. Allocates only if an image is larger than the previous ones. One thread.
 void paint_slice(const anatomy::VirtualPatient& patient, const volume::SlicePlane& plane, const SliceStyle& style,
-                 SliceBuffers& buffers, volume::RgbImage& picture, const motion::PatientMotion& motion = {});
+                 SliceBuffers& buffers, image::RgbImage& picture, const motion::PatientMotion& motion = {});
 
 /// How an ultrasound volume is shown in a slice of the CT.
 enum class FusionKind : std::uint8_t { kOff, kBlend, kCheckerboard };
@@ -91,6 +91,6 @@ struct PlacedUltrasound {
 /// Draws an ultrasound over an image of paint_slice of the same plane: in orange over the CT, or in the fields of a
 /// checkerboard. Nothing is drawn where the ultrasound has no image. One thread.
 void fuse_ultrasound(const PlacedUltrasound& ultrasound, const volume::SlicePlane& plane, const FusionStyle& style,
-                     volume::RgbImage& picture);
+                     image::RgbImage& picture);
 
 }  // namespace trocar::slices

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <string_view>
 
-#include "anatomy/build_patient.h"
+#include "anatomy/label_statistics.h"
 #include "core/result.h"
+#include "image/image.h"
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
-#include "volume/image.h"
 
 namespace trocar::slices {
 namespace {
@@ -77,31 +77,31 @@ constexpr int kLeastPixels = 96;
 constexpr int kPixelsPerDot = 256;  ///< The font's dots grow by one pixel per this number of pixels.
 constexpr int kMargin = 4;          ///< From the picture's edge, in dots.
 constexpr double kScaleBarShare = 0.3;
-constexpr volume::Rgb kInk{255, 255, 255};
-constexpr volume::Rgb kOutline{0, 0, 0};
+constexpr image::Rgb kInk{255, 255, 255};
+constexpr image::Rgb kOutline{0, 0, 0};
 
 int text_width(std::string_view text, int dot) {
-  return (static_cast<int>(text.size()) * volume::kGlyphAdvance - (volume::kGlyphAdvance - volume::kGlyphWidth)) * dot;
+  return (static_cast<int>(text.size()) * image::kGlyphAdvance - (image::kGlyphAdvance - image::kGlyphWidth)) * dot;
 }
 
-void draw_outlined(volume::RgbImage& image, int column, int row, std::string_view text, int dot) {
+void draw_outlined(image::RgbImage& image, int column, int row, std::string_view text, int dot) {
   for (int across = -1; across <= 1; ++across)
-    for (int down = -1; down <= 1; ++down) volume::draw_text(image, column + across, row + down, text, kOutline, dot);
-  volume::draw_text(image, column, row, text, kInk, dot);
+    for (int down = -1; down <= 1; ++down) image::draw_text(image, column + across, row + down, text, kOutline, dot);
+  image::draw_text(image, column, row, text, kInk, dot);
 }
 
-void fill(volume::RgbImage& image, int column, int row, int columns, int rows, volume::Rgb colour) {
+void fill(image::RgbImage& image, int column, int row, int columns, int rows, image::Rgb colour) {
   for (int r = std::max(0, row); r < std::min(image.rows, row + rows); ++r)
     for (int c = std::max(0, column); c < std::min(image.columns, column + columns); ++c) image.at(c, r) = colour;
 }
 
 void draw_letters(SlicePicture& picture, int dot) {
-  volume::RgbImage& image = picture.image;
+  image::RgbImage& image = picture.image;
   const std::string left = direction_letters(-picture.plane.step_u_P);
   const std::string right = direction_letters(picture.plane.step_u_P);
   const std::string top = direction_letters(-picture.plane.step_v_P);
   const std::string bottom = direction_letters(picture.plane.step_v_P);
-  const int height = volume::kGlyphHeight * dot;
+  const int height = image::kGlyphHeight * dot;
   const int margin = kMargin * dot;
   const int middle_row = (image.rows - height) / 2;
   draw_outlined(image, margin, middle_row, left, dot);
@@ -111,7 +111,7 @@ void draw_letters(SlicePicture& picture, int dot) {
 }
 
 void draw_scale_bar(SlicePicture& picture, int dot) {
-  volume::RgbImage& image = picture.image;
+  image::RgbImage& image = picture.image;
   const double mm_per_px = picture.plane.step_u_P.norm();
   const double length_mm = scale_bar_mm(kScaleBarShare * image.columns * mm_per_px);
   const int length = static_cast<int>(std::lround(length_mm / mm_per_px));
@@ -119,7 +119,7 @@ void draw_scale_bar(SlicePicture& picture, int dot) {
   const int row = image.rows - margin - dot;
   fill(image, margin - 1, row - 1, length + 2, dot + 2, kOutline);
   fill(image, margin, row, length, dot, kInk);
-  draw_outlined(image, margin, row - (volume::kGlyphHeight + 2) * dot, fmt::format("{:g} mm", length_mm), dot);
+  draw_outlined(image, margin, row - (image::kGlyphHeight + 2) * dot, fmt::format("{:g} mm", length_mm), dot);
 }
 
 }  // namespace
@@ -142,13 +142,13 @@ namespace {
 
 constexpr int kInsetColumns = 96, kInsetRows = 96;
 constexpr int kInsetMargin = 6;
-constexpr volume::Rgb kBorder{150, 158, 168};
-constexpr volume::Rgb kPath{255, 214, 10};
+constexpr image::Rgb kBorder{150, 158, 168};
+constexpr image::Rgb kPath{255, 214, 10};
 constexpr double kLabelOpacity = 0.45;  ///< More than in a slice view: details of the CT are not visible anyway.
 
 /// A slice through the region's centre that shows the whole body.
-volume::RgbImage paint(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region,
-                       SliceOrientation orientation, int columns, int rows) {
+image::RgbImage paint(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region,
+                      SliceOrientation orientation, int columns, int rows) {
   SliceGeometry geometry;
   geometry.axes = slice_axes(orientation);
   const Box body = body_box(patient);
@@ -160,7 +160,7 @@ volume::RgbImage paint(const anatomy::VirtualPatient& patient, const ThumbnailRe
   SliceStyle style;
   style.label_opacity = kLabelOpacity;
   SliceBuffers buffers;
-  volume::RgbImage image;
+  image::RgbImage image;
   paint_slice(patient, geometry.plane(), style, buffers, image);
   if (!region.path_P) return image;
 
@@ -192,15 +192,15 @@ ThumbnailRegion find_thumbnail_region(const anatomy::VirtualPatient& patient) {
   return {volume_box(patient.ct.geometry).center(), {}};
 }
 
-volume::RgbImage make_slice_thumbnail(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region) {
-  volume::RgbImage image = paint(patient, region, SliceOrientation::kAxial, kThumbnailColumns, kThumbnailRows);
+image::RgbImage make_slice_thumbnail(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region) {
+  image::RgbImage image = paint(patient, region, SliceOrientation::kAxial, kThumbnailColumns, kThumbnailRows);
   add_coronal_inset(patient, region, image);
   return image;
 }
 
-void add_coronal_inset(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region, volume::RgbImage& image) {
+void add_coronal_inset(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region, image::RgbImage& image) {
   TROCAR_CHECK(image.columns >= kThumbnailColumns && image.rows >= kThumbnailRows);
-  const volume::RgbImage inset = paint(patient, region, SliceOrientation::kCoronal, kInsetColumns, kInsetRows);
+  const image::RgbImage inset = paint(patient, region, SliceOrientation::kCoronal, kInsetColumns, kInsetRows);
   const int left = image.columns - kInsetColumns - kInsetMargin, top = image.rows - kInsetRows - kInsetMargin;
   for (int row = -1; row <= kInsetRows; ++row) {
     for (int column = -1; column <= kInsetColumns; ++column) {

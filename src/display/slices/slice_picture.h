@@ -4,9 +4,9 @@
 
 #include "anatomy/patient.h"
 #include "geometry/shapes.h"
+#include "image/image.h"
 #include "slices/paint_slice.h"
 #include "slices/slice_geometry.h"
-#include "volume/image.h"
 
 namespace trocar::slices {
 
@@ -14,7 +14,7 @@ namespace trocar::slices {
 /// the head up, the sagittal slice with the front on the left), window/level, square pixels. Labels are filled and
 /// outlined by colour, except fat, muscle and skin, which are the background of structures.
 struct SlicePicture {
-  volume::RgbImage image;
+  image::RgbImage image;
   volume::SlicePlane plane;  ///< Pixel (u, v) lies at origin + u step_u + v step_v.
   SliceOrientation orientation = SliceOrientation::kAxial;
   /// Image position of a point in P (pixels; may be outside).
@@ -54,10 +54,10 @@ struct ThumbnailRegion {
 ThumbnailRegion find_thumbnail_region(const anatomy::VirtualPatient& patient);
 
 /// An axial slice with labels through the region, and a coronal one in the corner; drawn without a graphics card.
-volume::RgbImage make_slice_thumbnail(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region);
+image::RgbImage make_slice_thumbnail(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region);
 
 /// Paints a coronal slice through the region with a border into the lower right corner of an image of at least
 /// kThumbnailColumns x kThumbnailRows pixels.
-void add_coronal_inset(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region, volume::RgbImage& image);
+void add_coronal_inset(const anatomy::VirtualPatient& patient, const ThumbnailRegion& region, image::RgbImage& image);
 
 }  // namespace trocar::slices

@@ -17,7 +17,7 @@ inline namespace core {
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
 /// Writes a line to standard error with its time and level. Not for real-time code, which returns flags and counts.
-/// Lines that another program can cause are logged within a LimitedLog (core/log_limit.h).
+/// Lines that another program can cause are logged within a LimitedLog (below).
 void log(LogLevel level, std::string_view text);
 /// The lowest level that is written; kWarning at start.
 void set_log_level(LogLevel level);

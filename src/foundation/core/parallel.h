@@ -6,7 +6,7 @@
 namespace trocar {
 inline namespace core {
 
-// In a cancelled job (core/cancellation.h) these functions end with Cancelled between two parts.
+// In a cancelled job (core/progress.h) these functions end with Cancelled between two parts.
 
 /// Calls body(first, last) on disjoint parts of [0, count) from several threads; returns when all are done.
 /// Parts are at least `grain` long. Never called from real-time code.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <numbers>
 
 #include "geometry/vec.h"
 
@@ -30,6 +29,11 @@ class Pose {
   Vec3 p_ = Vec3::Zero();
 };
 
+/// Rotation vector: axis times angle (rad, 0..pi) of a rotation. Real-time safe.
+Vec3 rotation_vector(const Mat3& R) noexcept;
+/// The rotation by |v| rad about v; zero gives identity. Real-time safe.
+Mat3 rotation_from_vector(const Vec3& v) noexcept;
+
 /// The shortest rotation that turns the unit vector `from` into the unit vector `to`.
 Mat3 rotation_between(const Vec3& from, const Vec3& to) noexcept;
 
@@ -39,7 +43,6 @@ Pose needle_pose(const Vec3& tip_A, const Vec3& axis_A) noexcept;
 
 /// Angle between two directions, 0..pi rad.
 double angle_between_rad(const Vec3& a, const Vec3& b) noexcept;
-inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 }  // namespace geometry
 inline namespace geometry {

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <numbers>
 
 namespace trocar {
 inline namespace geometry {
@@ -11,6 +12,15 @@ inline namespace geometry {
 using Vec3 = Eigen::Vector3d;   ///< Point (mm), direction, force (N) or torque (N mm); the name states frame and kind.
 using Vec3f = Eigen::Vector3f;  ///< The same in bulk data (meshes).
 using Mat3 = Eigen::Matrix3d;
+
+inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double radians(double angle_deg) noexcept {
+  return angle_deg * std::numbers::pi / 180.0;
+}
+constexpr double degrees(double angle_rad) noexcept {
+  return angle_rad * 180.0 / std::numbers::pi;
+}
 
 /// N zero vectors. `std::array<Vec3, N> x{}` is not zero: Eigen does not initialise its components.
 template <std::size_t N>

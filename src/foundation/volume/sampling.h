@@ -20,6 +20,18 @@ T sample_nearest(const Grid<T>& grid, const Vec3& p_P, T outside) noexcept {
   return grid[{round(index.x()), round(index.y()), round(index.z())}];
 }
 
+/// The two of `count` samples in a row beside the place `at` (in samples, kept within the row), and the share of the
+/// upper one, 0..1. Real-time safe.
+struct Neighbours {
+  std::int64_t low = 0, high = 0;
+  double share = 0.0;
+};
+inline Neighbours neighbours(double at, std::int64_t count) noexcept {
+  const double held = std::clamp(at, 0.0, static_cast<double>(count - 1));
+  const auto low = static_cast<std::int64_t>(held);
+  return {low, std::min(low + 1, count - 1), held - static_cast<double>(low)};
+}
+
 /// Trilinear value at a fractional index; indices are clamped to the grid (edge values continue). Real-time safe.
 template <class T>
 double sample_linear_at_index(const Grid<T>& grid, const Vec3& index) noexcept {

@@ -139,14 +139,14 @@ constexpr config::Range kPriorities{0, 1000};
 constexpr config::Range kColorValues{0, 255};
 constexpr std::size_t kMaxLabels = 255;
 
-Result<volume::Rgb> read_color(const config::TomlTable& colors, const std::string& name) {
+Result<image::Rgb> read_color(const config::TomlTable& colors, const std::string& name) {
   TROCAR_TRY(const std::vector<double> values, colors.numbers(name, kColorValues));
   const bool is_whole = std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
   if (values.size() != 3 || !is_whole)
     return fail(fmt::format("the colour \"{}\" is not three whole numbers", name), colors.where(),
                 "write [red, green, blue], each 0 to 255");
-  return volume::Rgb{static_cast<std::uint8_t>(values[0]), static_cast<std::uint8_t>(values[1]),
-                     static_cast<std::uint8_t>(values[2])};
+  return image::Rgb{static_cast<std::uint8_t>(values[0]), static_cast<std::uint8_t>(values[1]),
+                    static_cast<std::uint8_t>(values[2])};
 }
 
 template <class T>
@@ -236,7 +236,7 @@ class StructureReader {
 
   KnownStructures known_;
   std::map<std::string, int> priorities_;
-  std::map<std::string, volume::Rgb> colors_;
+  std::map<std::string, image::Rgb> colors_;
 };
 
 Result<KnownStructures> KnownStructures::load(const std::filesystem::path& data_folder) {

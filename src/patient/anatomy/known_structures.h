@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "volume/image.h"
+#include "image/image.h"
 
 namespace trocar::anatomy {
 
@@ -40,7 +40,7 @@ inline constexpr std::string_view kStructuresFile = "structures.toml";
 /// A structure that is known by its name.
 struct KnownStructure {
   std::string tissue;  ///< Tissue class (TissueTable). "skin": a mask of the whole body, no structure inside it.
-  volume::Rgb color{};
+  image::Rgb color{};
   int priority = 0;  ///< Where masks overlap, the higher one gets the voxel (a tumour over its liver).
 };
 

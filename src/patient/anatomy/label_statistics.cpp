@@ -1,6 +1,6 @@
-#include <array>
+#include "anatomy/label_statistics.h"
 
-#include "anatomy/build_patient.h"
+#include <array>
 
 namespace trocar::anatomy {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "geometry/shapes.h"
 #include "geometry/vec.h"
+#include "image/image.h"
 #include "motion/motion_model.h"
 #include "volume/grid.h"
-#include "volume/image.h"
 
 namespace trocar::anatomy {
 
@@ -21,7 +21,7 @@ struct Label {
   std::uint8_t id = 0;  ///< Value in the label volume; 0 is never a label.
   std::string name;  ///< As in the segmentation, else one of those found from HU: "rib_right_9", "livertumor1", "fat".
   std::string tissue;  ///< Tissue class (TissueTable): "bone", "liver".
-  volume::Rgb color{200, 200, 200};
+  image::Rgb color{200, 200, 200};
   bool is_derived = false;  ///< Made by the program from HU or from other labels; not in the segmentation.
 };
 

@@ -13,7 +13,7 @@ struct MotionState {
 };
 
 /// Where the patient is at one moment: the map between frame A (the anatomy at rest, as in the CT) and frame P (the
-/// patient now). An immutable value, made once by the clock (motion_clock.h) and taken by everything that looks at the
+/// patient now). An immutable value, made once by the clock (MotionDrive) and taken by everything that looks at the
 /// patient: forces, images, surfaces, scores. Without a model both frames are the same. The model belongs to the
 /// patient (anatomy::VirtualPatient::motion) and outlives the value. All functions are real-time safe.
 class PatientMotion {

@@ -19,7 +19,8 @@ Status check_range(double value, double low, double high, const char* name) {
                     "choose a value in the allowed range");
 }
 
-Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& device, const HapticOptions& options) {
+Status check_numbers(const NeedleGeometry& needle, const stylus::DeviceCapability& device,
+                     const HapticOptions& options) {
   TROCAR_TRY_STATUS(check_range(needle.radius_mm, 0.1, 2.5, "needle radius (mm)"));
   TROCAR_TRY_STATUS(check_range(needle.length_mm, 20.0, 300.0, "needle length (mm)"));
   TROCAR_TRY_STATUS(check_range(needle.inner_radius_mm, 0.0, 0.95 * needle.radius_mm, "radius of the bore (mm)"));
@@ -47,7 +48,7 @@ Status check_numbers(const NeedleGeometry& needle, const DeviceCapability& devic
 
 /// The constraint with the numbers of a table that was fitted to a patient, as far as the device can render them.
 PathConstraintParams fitted(PathConstraintParams constraint, const anatomy::PathConstraintLaw& law,
-                            const DeviceCapability& device) noexcept {
+                            const stylus::DeviceCapability& device) noexcept {
   if (!law.is_given) return constraint;
   constraint.force_n = std::min(law.force_n, device.max_stiffness_n_per_mm * constraint.linear_mm);
   constraint.torque_nmm = law.torque_nmm;
@@ -179,7 +180,7 @@ Result<ForceModel> parse_force_model(std::string_view name) {
 Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const anatomy::VirtualPatient> patient,
                                                              const anatomy::TissueTable& tissues,
                                                              const NeedleGeometry& needle,
-                                                             const DeviceCapability& device,
+                                                             const stylus::DeviceCapability& device,
                                                              const HapticOptions& options) {
   TROCAR_TRY_STATUS(check_patient(patient.get(), tissues, options));
   TROCAR_TRY_STATUS(check_numbers(needle, device, options));

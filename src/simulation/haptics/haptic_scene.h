@@ -15,6 +15,7 @@
 #include "haptics/needle_geometry.h"
 #include "haptics/proxy/needle_beam.h"
 #include "motion/patient_motion.h"
+#include "stylus/device_preset.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::haptics {
@@ -29,33 +30,11 @@ const char* to_string(ForceModel model) noexcept;
 /// "insertion", "proxy", "combined"; else exit status 2.
 Result<ForceModel> parse_force_model(std::string_view name);
 
-/// Sensing and limits of a device. Defaults: PHANTOM Premium 1.5 High Force 6DOF (paper B, section 2.1).
-struct DeviceCapability {
-  double peak_force_n = 37.5;
-  double peak_torque_nmm = 515.0;       ///< 0: senses rotation but has no torque.
-  double peak_roll_nmm = 170.0;         ///< Torque about the stylus' own axis; 0: as the peak torque.
-  double max_stiffness_n_per_mm = 3.5;  ///< Range 0.1..20. Source: vendor's nominal figure, references.md.
-  double stylus_weight_n = 0.5;         ///< Weight of links and stylus on the hand. Range 0..5. [assumed]
-  double stylus_lever_mm = 20.0;        ///< Centre of that weight behind the stylus origin, along -z of S. [assumed]
-
-  bool has_torque() const noexcept { return peak_torque_nmm > 0.0; }
-};
-
-/// Spring and damper between device and virtual needle (physics.md V1). Range: stiffness at most the device's. Values:
-/// references.md, steady within 0.3 N on a bare 45-150 g mass.
-struct CouplingParams {
-  double stiffness_n_per_mm = 1.0;
-  double damping_ns_per_mm = 0.003;
-
-  /// Springs at the pose so far ahead in time damp in proportion to their stiffness (physics.md B7).
-  double damping_time_s() const noexcept { return damping_ns_per_mm / stiffness_n_per_mm; }
-};
-
 /// Weight compensation, and switches for studies.
 struct HapticOptions {
   Tool tool = Tool::kNeedle;
   ForceModel force_model = ForceModel::kInsertion;
-  CouplingParams coupling;
+  stylus::CouplingParams coupling;
   PathConstraintParams constraint;
   bool has_stick = true;  ///< Karnopp holding force (physics.md F3).
   bool has_weight_compensation = true;
@@ -107,7 +86,7 @@ struct HapticScene {
   ContactFace face;  ///< Face of a transducer or a finger.
   NeedleBeam beam_with_stylet;
   NeedleBeam beam_without_stylet;
-  DeviceCapability device;
+  stylus::DeviceCapability device;
   HapticOptions options;
   Pose X_PW;  ///< The room in the patient.
   /// Needle in the stylus: tip at +z, length_mm from the stylus origin. For a transducer or a finger X_ST: y of T
@@ -138,7 +117,7 @@ struct HapticScene {
 Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<const anatomy::VirtualPatient> patient,
                                                              const anatomy::TissueTable& tissues,
                                                              const NeedleGeometry& needle,
-                                                             const DeviceCapability& device = {},
+                                                             const stylus::DeviceCapability& device = {},
                                                              const HapticOptions& options = {});
 
 /// Tissue at a point of the anatomy at rest. Real-time safe.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace trocar::haptics {
 namespace {
@@ -19,7 +18,7 @@ double needle_size_factor(const anatomy::NeedleSizeLaw& law, double reference_mm
                           const NeedleGeometry& needle) noexcept {
   if (!(law.diameter_mm > 0.0)) return 1.0;
   const double d = 2.0 * needle.radius_mm / (reference_mm > 0.0 ? reference_mm : law.diameter_mm);
-  const double reference_rad = law.bevel_deg * std::numbers::pi / 180.0;
+  const double reference_rad = radians(law.bevel_deg);
   const double wedge =
       wedge_factor(needle.bevel_rad, law.face_friction) / wedge_factor(reference_rad, law.face_friction);
   const double sharpness = std::pow(std::sin(needle.bevel_rad) / std::sin(reference_rad), law.bevel_power);

@@ -49,7 +49,8 @@ Result<double> number_of(std::string_view name, std::string_view text) {
   return fail_usage(fmt::format("\"{}\" is not a finite number", text), std::string(name), "give a decimal number");
 }
 
-Status restore_option(std::string_view name, std::string_view value, HapticOptions& options, DeviceCapability& device) {
+Status restore_option(std::string_view name, std::string_view value, HapticOptions& options,
+                      stylus::DeviceCapability& device) {
   if (name == kForceModel) {
     TROCAR_TRY(options.force_model, parse_force_model(value));
     return {};
@@ -82,7 +83,7 @@ std::vector<std::string> option_texts(const HapticScene& scene) {
   return texts;
 }
 
-Status restore_options(std::span<const std::string> texts, HapticOptions& options, DeviceCapability& device) {
+Status restore_options(std::span<const std::string> texts, HapticOptions& options, stylus::DeviceCapability& device) {
   for (const std::string& text : texts) {
     const std::string_view view = text;
     const std::size_t at = view.find('=');
@@ -91,6 +92,12 @@ Status restore_options(std::span<const std::string> texts, HapticOptions& option
     TROCAR_TRY_STATUS(restore_option(view.substr(0, at), view.substr(at + 1), options, device));
   }
   return {};
+}
+
+void apply_device_preset(const stylus::DevicePreset& preset, HapticOptions& options) noexcept {
+  options.coupling = preset.coupling;
+  PathConstraintParams& constraint = options.constraint;
+  constraint.force_n = std::min(constraint.force_n, preset.coupling.stiffness_n_per_mm * constraint.linear_mm);
 }
 
 }  // namespace trocar::haptics

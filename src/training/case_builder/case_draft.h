@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "anatomy/build_patient.h"
+#include "anatomy/label_statistics.h"
 #include "anatomy/patient.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "cases/force_curve.h"
@@ -17,6 +17,7 @@
 #include "core/step_history.h"
 #include "geometry/pose.h"
 #include "io/image/image_file.h"
+#include "patient_builder/build_patient.h"
 #include "registration/ct_ultrasound/landmark_fit.h"
 #include "registration/shadow/beams.h"
 #include "tasks/needle.h"
@@ -28,13 +29,13 @@ namespace trocar::case_builder {
 /// Imported data: immutable, shared by all drafts.
 struct ImportedPatient {
   anatomy::VirtualPatient patient;
-  std::vector<anatomy::NamedMesh> meshes;            ///< Surfaces by the names that the labels had at the import.
-  std::vector<anatomy::LabelStatistics> statistics;  ///< Statistics of the patient's labels.
-  std::vector<std::string> warnings;                 ///< Warnings of the import, one line each.
-  std::vector<anatomy::Finding> label_findings;      ///< Of the segmentation (segmentation_findings).
-  std::vector<anatomy::AnatomyFinding> findings;     ///< About the whole segmentation; some may be confirmed.
-  std::string source;                                ///< As given by the user: a file, a folder, an embedded patient.
-  std::string own_tissues;                           ///< Text of the patient's own tissue table; empty: none.
+  std::vector<anatomy::NamedMesh> meshes;                 ///< Surfaces by the names that the labels had at the import.
+  std::vector<anatomy::LabelStatistics> statistics;       ///< Statistics of the patient's labels.
+  std::vector<std::string> warnings;                      ///< Warnings of the import, one line each.
+  std::vector<anatomy::Finding> label_findings;           ///< Of the segmentation (segmentation_findings).
+  std::vector<patient_builder::AnatomyFinding> findings;  ///< About the whole segmentation; some may be confirmed.
+  std::string source;       ///< As given by the user: a file, a folder, an embedded patient.
+  std::string own_tissues;  ///< Text of the patient's own tissue table; empty: none.
 };
 
 /// A recorded ultrasound volume: immutable, shared by all drafts. Frame U: that of the volume.

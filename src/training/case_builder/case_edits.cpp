@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "anatomy/plausibility/judge_anatomy.h"
 #include "case_builder/case_draft.h"
+#include "patient_builder/plausibility/judge_anatomy.h"
 #include "tasks/assess_path.h"
 
 namespace trocar::case_builder {
@@ -61,7 +61,7 @@ Result<CaseDraft> set_label_tissue(CaseDraft draft, std::uint8_t id, const std::
   return draft;
 }
 
-Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const volume::Rgb& color) {
+Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const image::Rgb& color) {
   TROCAR_TRY(anatomy::Label * label, find_label(draft, id));
   label->color = color;
   return draft;
@@ -146,8 +146,8 @@ Result<CaseDraft> set_expert_path(CaseDraft draft, const Segment& line_P) {
   return draft;
 }
 
-CaseDraft confirm_finding(CaseDraft draft, const anatomy::AnatomyFinding& finding) {
-  draft.provenance.push_back(anatomy::confirmation(finding));
+CaseDraft confirm_finding(CaseDraft draft, const patient_builder::AnatomyFinding& finding) {
+  draft.provenance.push_back(patient_builder::confirmation(finding));
   return draft;
 }
 

@@ -18,7 +18,7 @@ inline constexpr const char* kExpertPath = "expert";  ///< Name of the path that
 Result<CaseDraft> rename_label(CaseDraft draft, std::uint8_t id, const std::string& name);
 /// `tissue`: a name of the tissue table; the caller ensures this.
 Result<CaseDraft> set_label_tissue(CaseDraft draft, std::uint8_t id, const std::string& tissue);
-Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const volume::Rgb& color);
+Result<CaseDraft> set_label_color(CaseDraft draft, std::uint8_t id, const image::Rgb& color);
 
 /// Uses the task of another template; target, zone and path stay.
 CaseDraft use_template(CaseDraft draft, const tasks::Task& base);
@@ -40,7 +40,7 @@ Result<CaseDraft> set_expert_path(CaseDraft draft, const Segment& line_P);
 CaseDraft clear_expert_path(CaseDraft draft);
 
 /// Keeps in the provenance that a finding of the import is right.
-CaseDraft confirm_finding(CaseDraft draft, const anatomy::AnatomyFinding& finding);
+CaseDraft confirm_finding(CaseDraft draft, const patient_builder::AnatomyFinding& finding);
 
 /// Adds a landmark inside the volume, or moves the one of that name.
 Result<CaseDraft> set_landmark(CaseDraft draft, const std::string& name, const Vec3& p_P);

@@ -4,9 +4,6 @@
 
 #include <filesystem>
 
-#include "anatomy/phantom/phantom.h"
-#include "anatomy/plausibility/judge_anatomy.h"
-#include "anatomy/repair/repair_segmentation.h"
 #include "case_builder/ultrasound.h"
 #include "cases/prepare_case.h"
 #include "core/files/folders.h"
@@ -16,6 +13,9 @@
 #include "io/patient/patient_cache.h"
 #include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
+#include "patient_builder/plausibility/judge_anatomy.h"
+#include "patient_builder/repair/repair_segmentation.h"
+#include "phantom/phantom.h"
 #include "png/png_file.h"
 #include "slices/slice_picture.h"
 #include "surface/extract_surface.h"
@@ -43,11 +43,11 @@ Status check_request(const ImportRequest& request) {
 }
 
 Result<anatomy::VirtualPatient> read_patient(const ImportRequest& request, std::vector<std::string>& warnings,
-                                             std::vector<anatomy::AnatomyFinding>& findings, const Progress& progress,
-                                             const std::stop_token& stop) {
+                                             std::vector<patient_builder::AnatomyFinding>& findings,
+                                             const Progress& progress, const std::stop_token& stop) {
   if (is_whole_patient(request)) {
     TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient({request.ct, 1}, progress));
-    findings = anatomy::judge_anatomy(patient);
+    findings = patient_builder::judge_anatomy(patient);
     return patient;
   }
   io::PatientFiles files;
@@ -69,9 +69,7 @@ Result<anatomy::VirtualPatient> read_patient(const ImportRequest& request, std::
 
 bool is_whole_patient(const ImportRequest& request) {
   if (is_patient_folder(request.ct)) return true;
-  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients())
-    if (info.name == request.ct) return true;
-  return false;
+  return phantom::find_embedded_patient(request.ct).has_value();
 }
 
 Result<CaseDraft> import_case(const ImportRequest& request, const Progress& progress, const std::stop_token& stop) {
@@ -92,7 +90,7 @@ Result<CaseDraft> import_case(const ImportRequest& request, const Progress& prog
     imported->meshes = surface::extract_surfaces(imported->patient, {}, surfaces);
   }
   imported->statistics = anatomy::label_statistics(imported->patient);
-  imported->label_findings = anatomy::segmentation_findings(imported->patient);
+  imported->label_findings = patient_builder::segmentation_findings(imported->patient);
 
   CaseDraft draft;
   draft.name = imported->patient.name;
@@ -188,7 +186,7 @@ Status save_case(const CaseDraft& draft, DraftPatient& patients, const SaveOptio
   if (draft.name.empty()) return fail_usage("the case has no name", {}, "give it one");
   TROCAR_TRY_STATUS(check_target(options));
   const anatomy::VirtualPatient patient = patient_of(draft, patients);
-  const volume::RgbImage thumbnail = slices::make_slice_thumbnail(patient, slices::find_thumbnail_region(patient));
+  const image::RgbImage thumbnail = slices::make_slice_thumbnail(patient, slices::find_thumbnail_region(patient));
   std::vector<io::PatientExtra> extras{{tasks::kOwnTaskFile, tasks::task_to_toml(draft.task, draft.base)},
                                        {io::kThumbnailFile, png::encode_png(thumbnail)}};
   if (!draft.imported->own_tissues.empty()) extras.push_back({cases::kOwnTissueFile, draft.imported->own_tissues});

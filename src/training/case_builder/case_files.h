@@ -26,7 +26,7 @@ struct ImportRequest {
   io::Mirroring mirroring = io::Mirroring::kNone;
   std::vector<std::string> confirmed{};  ///< Findings about the whole segmentation that are right.
   /// Receives the findings when the import ends, also if it fails; may be empty.
-  std::shared_ptr<std::vector<anatomy::AnatomyFinding>> findings{};
+  std::shared_ptr<std::vector<patient_builder::AnatomyFinding>> findings{};
 };
 
 /// True if the request names a patient that is already complete.

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 
-#include "anatomy/patient_findings.h"
-#include "anatomy/plausibility/judge_anatomy.h"
 #include "case_builder/case_draft.h"
 #include "case_builder/ultrasound.h"
+#include "patient_builder/patient_findings.h"
+#include "patient_builder/plausibility/judge_anatomy.h"
 #include "tasks/assess_path.h"
 #include "volume/sampling.h"
 
@@ -72,16 +72,18 @@ class Checks {
   }
 
   void check_labels() {
-    const std::vector<anatomy::Finding> of_patient = anatomy::patient_findings(patient_, statistics_);
+    const std::vector<anatomy::Finding> of_patient = patient_builder::patient_findings(patient_, statistics_);
     for (const anatomy::Finding& finding : draft_.imported->label_findings)
       warn(CaseStep::kLabels, finding.text, finding.place_P);
     for (const anatomy::Finding& finding : of_patient) warn(CaseStep::kLabels, finding.text, finding.place_P);
     const auto& findings = draft_.imported->findings;
-    for (const anatomy::AnatomyFinding& finding : findings)
-      if (!anatomy::is_confirmed(draft_.provenance, finding.name)) warn(CaseStep::kImport, finding.text);
+    for (const patient_builder::AnatomyFinding& finding : findings)
+      if (!patient_builder::is_confirmed(draft_.provenance, finding.name)) warn(CaseStep::kImport, finding.text);
     for (const std::string& warning : draft_.imported->warnings) {
       const auto is_same = [&](const anatomy::Finding& finding) { return finding.text == warning; };
-      const auto is_finding = [&](const anatomy::AnatomyFinding& finding) { return warning.starts_with(finding.text); };
+      const auto is_finding = [&](const patient_builder::AnatomyFinding& finding) {
+        return warning.starts_with(finding.text);
+      };
       const bool is_told =
           std::any_of(of_patient.begin(), of_patient.end(), is_same) ||
           std::any_of(findings.begin(), findings.end(), is_finding) ||

@@ -30,7 +30,7 @@ Result<std::shared_ptr<const ImportedUltrasound>> read_ultrasound(const Ultrasou
 /// Middle of the volume, in U.
 Vec3 middle_of(const ImportedUltrasound& ultrasound);
 
-/// Adds the ultrasound of a patient folder (io/patient/patient_panorama.h), if it has one. Errors: its files.
+/// Adds the ultrasound of a patient folder (io/patient/patient_folder.h), if it has one. Errors: its files.
 Result<CaseDraft> add_saved_ultrasound(CaseDraft draft, const std::filesystem::path& folder);
 
 /// Sets the volume; landmarks and pose of another one are removed.

@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "anatomy/known_structures.h"
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
 #include "core/files/output_file.h"
 #include "core/log.h"
+#include "phantom/phantom.h"
 #include "tasks/assess_path.h"
 #include "tasks/fit_to_patient.h"
 
@@ -32,11 +32,8 @@ Status find_task(Case& made, const CaseOptions& options, const fs::path& tasks_f
   if (has_own_task(options.patient_folder))
     return read_task_file(made, fs::path(options.patient_folder) / tasks::kOwnTaskFile, tasks_folder);
   std::error_code ignored;
-  const auto& embedded = anatomy::embedded_patients();
   const bool is_known = options.patient_folder.empty() || fs::exists(options.patient_folder, ignored) ||
-                        std::any_of(embedded.begin(), embedded.end(), [&](const anatomy::PhantomInfo& info) {
-                          return info.name == options.patient_folder;
-                        });
+                        phantom::find_embedded_patient(options.patient_folder).has_value();
   if (!is_known)
     return fail_usage("no such patient", options.patient_folder, "name a patient folder, or see trocar patient list");
   return fail_usage("the patient has no task of its own", options.patient_folder, "name a task, see trocar task list");
@@ -210,7 +207,7 @@ std::vector<tasks::PlannedPath> find_experts(const Case& the_case, const anatomy
 std::string with_body(const std::string& patient, const tasks::Tier& level) {
   std::string source = patient;
   for (const auto& [key, factor] : level.body)
-    source += fmt::format("{}{}={}", source.size() == patient.size() ? anatomy::kBodySign : ',', key, factor);
+    source += fmt::format("{}{}={}", source.size() == patient.size() ? phantom::kBodySign : ',', key, factor);
   return source;
 }
 

@@ -27,7 +27,7 @@ struct CaseOptions {
   std::string tissue_file;             ///< Empty: the patient's own table, else data/tissues.toml.
   std::string profile;                 ///< Profile of the tissue file; without a file, of data/tissues.toml.
   std::vector<std::string> overrides;  ///< "liver.k=0.5"
-  std::string posture;                 ///< Posture of the patient; empty: tried in the order of tasks/postures.h.
+  std::string posture;                 ///< Posture of the patient; empty: tried in the order of tasks::postures_to_try.
   std::string level;                   ///< Name or number of a level of the task; empty: the task as it is.
   std::uint64_t seed = 1;
 };

@@ -1,7 +1,6 @@
 #include "cases/scene_request.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace trocar::cases {
 
@@ -55,7 +54,7 @@ haptics::NeedleGeometry needle_geometry(const tasks::Needle& needle) noexcept {
   geometry.length_mm = needle.length_mm;
   geometry.inner_radius_mm = 0.5 * needle.inner_diameter_mm;
   geometry.stylet_radius_mm = 0.5 * needle.stylet_diameter_mm;
-  geometry.bevel_rad = needle.bevel_deg * std::numbers::pi / 180.0;
+  geometry.bevel_rad = radians(needle.bevel_deg);
   geometry.bevel_share = needle.bevel_share;
   return geometry;
 }

@@ -25,8 +25,8 @@ constexpr int kGasBelow_hu = -300;  ///< As in src/patient/anatomy; gas in bowel
 constexpr double kBehindTarget = 1.33;
 constexpr double kDepthStep_mm = 10.0;
 constexpr double kLeastDepth_mm = 80.0;
-constexpr double kTiltedSkin = 35.0 * std::numbers::pi / 180.0;  ///< Maximum tilt of the plane relative to the skin.
-constexpr std::array kSeen{0.3, 0.5, 0.7, 0.85, 1.0};            ///< Checked points of the path.
+constexpr double kTiltedSkin = radians(35.0);          ///< Maximum tilt of the plane relative to the skin.
+constexpr std::array kSeen{0.3, 0.5, 0.7, 0.85, 1.0};  ///< Checked points of the path.
 
 // Weights of the cost of a pose; assumed, chosen on the embedded patients.
 constexpr double kTargetCost = 4.0;

@@ -6,13 +6,13 @@
 #include <memory>
 #include <set>
 
-#include "anatomy/phantom/phantom.h"
 #include "cases/prepare_case.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "io/patient/patient_cache.h"
 #include "io/patient/patient_folder.h"
 #include "learning/history.h"
+#include "phantom/phantom.h"
 #include "results/attempts.h"
 #include "storage/session_file.h"
 
@@ -78,7 +78,7 @@ FitCheck fit_check(const std::string& task, const std::string& patient, const st
 }
 
 Result<std::string> patient_of_difficulty(const std::string& task, int difficulty) {
-  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients())
+  for (const phantom::PhantomInfo& info : phantom::embedded_patients())
     if (info.difficulty == difficulty && std::find(info.tasks.begin(), info.tasks.end(), task) != info.tasks.end())
       return info.name;
   return fail_usage(fmt::format("there is no patient of difficulty {} for {}", difficulty, task), "--difficulty",

@@ -7,12 +7,12 @@
 #include <chrono>
 #include <map>
 
-#include "anatomy/phantom/phantom.h"
 #include "config/json.h"
 #include "core/files/folders.h"
 #include "core/files/input_file.h"
 #include "core/files/output_file.h"
 #include "learning/history.h"
+#include "phantom/phantom.h"
 #include "signing/token.h"
 #include "storage/score_json.h"
 
@@ -23,12 +23,6 @@ namespace {
 using config::Json;
 
 constexpr const char* kAnotherExam = "repeat the exam with another number";
-
-const anatomy::PhantomInfo* find_embedded(const std::string& name) {
-  for (const anatomy::PhantomInfo& info : anatomy::embedded_patients())
-    if (info.name == name) return &info;
-  return nullptr;
-}
 
 /// Numbers of the tissue table and options that were changed, at the begin or during the attempt.
 std::vector<std::string> changed_settings(const storage::Session& session) {
@@ -52,7 +46,7 @@ Json outcome_json(const scoring::Outcome& outcome) {
 
 Json describe(const storage::Session& session, const ExamEnd& end) {
   const storage::SessionInfo& info = session.info;
-  const anatomy::PhantomInfo* embedded = find_embedded(info.patient_source);
+  const std::optional<phantom::PhantomInfo> embedded = phantom::find_embedded_patient(info.patient_source);
   const char* const checked_by = end.person.has_given_pin ? "PIN" : "nothing";
   Json json = {{"format", kSealFormat},
                {"attempt_id", info.attempt_id},
@@ -66,8 +60,8 @@ Json describe(const storage::Session& session, const ExamEnd& end) {
                {"patient", info.patient_source},
                {"patient_seed", info.patient_seed},
                {"patient_hash", info.patient_hash},
-               {"exam_number", embedded != nullptr ? Json(info.patient_seed) : Json(nullptr)},
-               {"difficulty", embedded != nullptr ? Json(embedded->difficulty) : Json(nullptr)},
+               {"exam_number", embedded.has_value() ? Json(info.patient_seed) : Json(nullptr)},
+               {"difficulty", embedded.has_value() ? Json(embedded->difficulty) : Json(nullptr)},
                {"level", info.level},
                {"operator", info.operator_name},
                {"device", info.device},

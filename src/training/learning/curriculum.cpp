@@ -88,11 +88,11 @@ Result<LearningRules> load_rules(const std::filesystem::path& file) {
 }
 
 Curriculum make_curriculum(LearningRules rules, std::span<const tasks::Task> tasks,
-                           std::span<const anatomy::PhantomInfo> patients) {
+                           std::span<const phantom::PhantomInfo> patients) {
   Curriculum curriculum{std::move(rules), {}};
   for (const tasks::Task& task : tasks) {
     Course course{task.name, task.title, {}, task.weights};
-    for (const anatomy::PhantomInfo& patient : patients)
+    for (const phantom::PhantomInfo& patient : patients)
       if (patient.difficulty > 0 &&
           std::find(patient.tasks.begin(), patient.tasks.end(), task.name) != patient.tasks.end())
         course.cases.push_back({patient.name, patient.difficulty});
@@ -114,7 +114,7 @@ Result<Curriculum> load_curriculum(const std::filesystem::path& data_folder) {
     if (std::none_of(tasks.begin(), tasks.end(), [&](const tasks::Task& task) { return task.name == name; }))
       return fail(fmt::format("there is no task \"{}\"", name), file.string() + ": order",
                   "name tasks of trocar task list");
-  return make_curriculum(std::move(rules), tasks, anatomy::embedded_patients());
+  return make_curriculum(std::move(rules), tasks, phantom::embedded_patients());
 }
 
 }  // namespace trocar::learning

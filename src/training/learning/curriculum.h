@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/result.h"
 #include "learning/history.h"
+#include "phantom/phantom.h"
 #include "tasks/task.h"
 
 namespace trocar::learning {
@@ -71,7 +71,7 @@ Result<LearningRules> load_rules(const std::filesystem::path& file);
 
 /// The tasks with the embedded patients that were made for them. Patients without a difficulty are test scenes.
 Curriculum make_curriculum(LearningRules rules, std::span<const tasks::Task> tasks,
-                           std::span<const anatomy::PhantomInfo> patients);
+                           std::span<const phantom::PhantomInfo> patients);
 /// That of the data folder. Errors: those of load_rules and of tasks::load_tasks; `order` names an unknown task.
 Result<Curriculum> load_curriculum(const std::filesystem::path& data_folder);
 

@@ -16,7 +16,7 @@
 
 namespace trocar::learning {
 
-/// TrainingMode of help of an attempt, from most to least.
+/// Level of help of an attempt, from most to least.
 enum class TrainingMode : std::uint8_t { kGuided, kAssisted, kExam };
 inline constexpr std::array kTrainingModes{TrainingMode::kGuided, TrainingMode::kAssisted, TrainingMode::kExam};
 /// Name in a session file: "assisted".

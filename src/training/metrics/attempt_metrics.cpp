@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "geometry/pose.h"
 #include "metrics/detail/body.h"
@@ -114,7 +113,7 @@ AttemptMetrics measure_attempt(const anatomy::VirtualPatient& patient, const ana
   metrics.entry_s = entered.time_s;
   metrics.end_s = last.time_s;
   metrics.axis_P = last.rest_axis;
-  metrics.angle_deg = angle_between_rad(last.rest_axis, plan.line_P.b - plan.line_P.a) * 180.0 / std::numbers::pi;
+  metrics.angle_deg = degrees(angle_between_rad(last.rest_axis, plan.line_P.b - plan.line_P.a));
   metrics.tip_P = last.rest_tip_mm;
   metrics.pierced_tip_P = telemetry::pierced_rest_tip_mm(last);
   metrics.target_offset_P = last.rest_tip_mm - plan.line_P.b;

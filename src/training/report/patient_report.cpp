@@ -19,10 +19,10 @@ constexpr double kFindingField_mm = 120.0;
 constexpr int kFindingPx = 360;
 constexpr int kGapPx = 6;
 constexpr double kRingPx = 13.0;
-constexpr volume::Rgb kRing{255, 80, 40};
+constexpr image::Rgb kRing{255, 80, 40};
 
 /// A ring with a dark border, around the place so that it stays visible.
-void draw_ring(const Eigen::Vector2d& middle, volume::RgbImage& image) {
+void draw_ring(const Eigen::Vector2d& middle, image::RgbImage& image) {
   for (int row = 0; row < image.rows; ++row)
     for (int column = 0; column < image.columns; ++column) {
       const double off = std::abs((Eigen::Vector2d(column, row) - middle).norm() - kRingPx);
@@ -33,7 +33,7 @@ void draw_ring(const Eigen::Vector2d& middle, volume::RgbImage& image) {
     }
 }
 
-void paste(const volume::RgbImage& from, int column, volume::RgbImage& to) {
+void paste(const image::RgbImage& from, int column, image::RgbImage& to) {
   for (int y = 0; y < std::min(from.rows, to.rows); ++y)
     for (int x = 0; x < std::min(from.columns, to.columns - column); ++x) to.at(column + x, y) = from.at(x, y);
 }
@@ -57,13 +57,13 @@ std::string finding_list(const anatomy::VirtualPatient& patient, const std::vect
 
 }  // namespace
 
-volume::RgbImage finding_picture(const anatomy::VirtualPatient& patient, const anatomy::Finding& finding) {
+image::RgbImage finding_picture(const anatomy::VirtualPatient& patient, const anatomy::Finding& finding) {
   TROCAR_CHECK(finding.place_P.has_value());
   slices::SliceOptions options;
   options.size_px = kFindingPx;
   options.field_mm = kFindingField_mm;
   options.center_P = *finding.place_P;
-  volume::RgbImage row(3 * kFindingPx + 2 * kGapPx, kFindingPx);
+  image::RgbImage row(3 * kFindingPx + 2 * kGapPx, kFindingPx);
   int column = 0;
   for (const auto orientation :
        {slices::SliceOrientation::kAxial, slices::SliceOrientation::kCoronal, slices::SliceOrientation::kSagittal}) {

@@ -9,11 +9,11 @@
 #include <numbers>
 #include <string>
 
+#include "image/image.h"
 #include "png/png_file.h"
 #include "registration/intensity/gray_levels.h"
 #include "registration/shadow/shadow_mask.h"
 #include "report/detail/html.h"
-#include "volume/image.h"
 
 namespace trocar::report::detail {
 
@@ -27,7 +27,7 @@ SliceAxes slice_axes(const registration::Beams& beams, const volume::GridGeometr
 
 /// A slice of an ultrasound volume as an SVG image; one unit is half a millimetre.
 struct VolumeSlice {
-  volume::RgbImage image;
+  image::RgbImage image;
   volume::GridGeometry geometry;
   SliceAxes axes;
 
@@ -71,7 +71,7 @@ std::string volume_table(const Volumes& volumes, const registration::Stitching& 
                                            static_cast<double>(size[2] - 1)));
       const Pose& X = *stitching.X_0N[n];
       place = fmt::format("moved {} mm, turned {}°", number_text((X * middle - middle).norm(), 1),
-                          number_text(Eigen::AngleAxisd(X.R()).angle() * 180.0 / std::numbers::pi, 1));
+                          number_text(degrees(Eigen::AngleAxisd(X.R()).angle()), 1));
       if (n == 0) place = "reference";
     }
     rows +=
@@ -237,7 +237,7 @@ namespace trocar::report::detail {
 namespace {
 
 constexpr double kUnitsPerMm = 2.0;
-constexpr volume::Rgb kBorder = {255, 190, 60};
+constexpr image::Rgb kBorder = {255, 190, 60};
 
 volume::Index3 voxel_of(const SliceAxes& axes, std::int64_t column, std::int64_t row, std::int64_t index) {
   volume::Index3 ijk{0, 0, 0};
@@ -287,8 +287,8 @@ VolumeSlice cut_slice(const volume::LabelGrid& gray, const registration::ImagedR
   VolumeSlice slice;
   slice.geometry = gray.geometry;
   slice.axes = axes;
-  slice.image = volume::RgbImage(static_cast<int>(size[static_cast<std::size_t>(axes.column)]),
-                                 static_cast<int>(size[static_cast<std::size_t>(axes.along)]));
+  slice.image = image::RgbImage(static_cast<int>(size[static_cast<std::size_t>(axes.column)]),
+                                static_cast<int>(size[static_cast<std::size_t>(axes.along)]));
   const double white = registration::bright_gray(gray);
   index = std::clamp<std::int64_t>(index, 0, size[static_cast<std::size_t>(axes.across)] - 1);
   for (int row = 0; row < slice.image.rows; ++row) {

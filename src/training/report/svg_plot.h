@@ -9,7 +9,7 @@
 
 namespace trocar::report {
 
-/// A curve. `style` is a CSS class that gives colour and dashes (report/detail/style.h). Points that are not finite
+/// A curve. `style` is a CSS class that gives colour and dashes (report/detail/html.h). Points that are not finite
 /// break the line.
 struct PlotSeries {
   std::string name;

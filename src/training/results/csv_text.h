@@ -11,7 +11,7 @@
 namespace trocar::results {
 
 /// A text as a field of a CSV file (RFC 4180): always in quotation marks, and with the apostrophes of
-/// core/csv_guard.h, so that no spreadsheet takes it or a part of it for a formula.
+/// core/text.h, so that no spreadsheet takes it or a part of it for a formula.
 std::string csv_text(std::string_view text);
 /// Fields with commas between them and a line end.
 std::string csv_row(const std::vector<std::string>& fields);

@@ -32,7 +32,7 @@ struct PersonProficiency {
   double practice_s = 0.0;                 ///< Recorded time of all attempts, those that do not count included.
   std::optional<double> first_pass_share;  ///< Mean of the metric first_pass_success; empty: not measured.
   std::optional<double> time_to_target_s;  ///< Median of the metric time_to_target; empty: never reached.
-  std::optional<double> instructor_min;    ///< Entered for the task (teaching.h); empty: nothing was entered.
+  std::optional<double> instructor_min;    ///< Entered for the task (notes.h); empty: nothing was entered.
 };
 
 /// People of a kind: trainees or experts, real or simulated.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "config/toml.h"
 
@@ -21,12 +20,6 @@ static_assert(kActionNames.size() == static_cast<std::size_t>(kLastAction) + 1);
 
 const char* to_string(ActionKind kind) noexcept {
   return kActionNames[static_cast<std::size_t>(kind)];
-}
-
-std::optional<ActionKind> find_action(std::string_view name) noexcept {
-  const auto found = std::find(kActionNames.begin(), kActionNames.end(), name);
-  if (found == kActionNames.end()) return std::nullopt;
-  return static_cast<ActionKind>(found - kActionNames.begin());
 }
 
 const Action* find_wire(std::span<const Action> actions, double time_s) noexcept {
@@ -139,7 +132,7 @@ Result<SubstanceTable> load_substances(const std::filesystem::path& file) {
 }
 
 double bevel_opening_mm(const Needle& needle) noexcept {
-  const double bevel_rad = std::clamp(needle.bevel_deg, 5.0, 90.0) * std::numbers::pi / 180.0;
+  const double bevel_rad = radians(std::clamp(needle.bevel_deg, 5.0, 90.0));
   return std::max(0.2, needle.outer_diameter_mm / std::tan(bevel_rad));
 }
 

@@ -79,7 +79,6 @@ enum class ActionKind : std::uint8_t {
 inline constexpr ActionKind kLastAction = ActionKind::kLoad;
 /// Name in files: "draw_stylet" …
 const char* to_string(ActionKind kind) noexcept;
-std::optional<ActionKind> find_action(std::string_view name) noexcept;
 
 /// An action that a trainee or an operator asks for.
 struct ActionRequest {

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "tasks/detail/block_grid.h"
 #include "tasks/detail/path_check.h"
@@ -66,14 +65,14 @@ class Assessor {
                       made_.skin_distance_mm < 0.0 ? "below" : "above"));
     const Vec3 normal = detail::skin_normal(patient_.skin_distance_mm, entry_P);
     const double cosine = std::clamp(-normal.dot(axis_P_), -1.0, 1.0);
-    made_.entry_angle_deg = std::acos(cosine) * 180.0 / std::numbers::pi;
+    made_.entry_angle_deg = degrees(std::acos(cosine));
     if (made_.entry_angle_deg > task_.max_entry_angle_deg)
       add(PathFault::kGlancing, entry_P,
           fmt::format("the needle is {:.0f}° from the skin's normal; the limit is {:.0f}°", made_.entry_angle_deg,
                       task_.max_entry_angle_deg));
     const anatomy::Posture posture = posture_of(task_, patient_);
     const double down = normal.dot(anatomy::gravity_P(posture));
-    if (down > std::sin(task_.max_posterior_deg * std::numbers::pi / 180.0))
+    if (down > std::sin(radians(task_.max_posterior_deg)))
       add(PathFault::kOutOfReach, entry_P,
           fmt::format("the patient is {}: the entry faces down and is not accessible",
                       anatomy::posture_words(posture)));

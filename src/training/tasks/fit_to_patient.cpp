@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "geometry/pose.h"
@@ -180,7 +179,7 @@ double bevel_to_fibres_deg(const Mat3& R_PN, const Vec3& fibres_P) noexcept {
   const Vec3 across_P = fibres_P - fibres_P.dot(R_PN.col(2)) * R_PN.col(2);
   if (!(across_P.norm() > kLeast)) return 0.0;
   const double sine = std::abs(R_PN.col(1).dot(across_P.normalized()));
-  return std::asin(std::min(sine, 1.0)) * 180.0 / std::numbers::pi;
+  return degrees(std::asin(std::min(sine, 1.0)));
 }
 
 Vec3 bevel_across_fibres_P(const Vec3& axis_P, const Vec3& fibres_P) noexcept {

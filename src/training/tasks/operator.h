@@ -113,10 +113,6 @@ struct HandSpring {
 };
 HandSpring hand_spring(const HandParams& hand, const HandCommand& command) noexcept;
 
-/// Force of the hand on the stylus, N in P, with the needle at X_PN_device moving with v_P (mm/s). Real-time safe.
-Vec3 hand_force_n(const HandParams& hand, const HandCommand& command, const Pose& X_PN_device,
-                  const Vec3& v_P) noexcept;
-
 /// Orientation of the device's needle dt_s later: R_PN turned towards R_PN_wanted the shortest way, the remaining angle
 /// shrinks by exp(-dt/time constant) for any step. Real-time safe.
 Mat3 follow_rotation(const HandParams& hand, const Mat3& R_PN, const Mat3& R_PN_wanted, double dt_s) noexcept;

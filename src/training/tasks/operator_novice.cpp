@@ -85,7 +85,7 @@ Segment miss(const OperatorCase& the_case, double share, Random& random) noexcep
     return Vec3(R_PN * Vec3(std::cos(angle_rad), std::sin(angle_rad), 0.0));
   };
   const Vec3 entry_P = path_P.a + share * hidden * draw(random, kEntryError_mm) * sideways_P();
-  const double tilt_rad = share * draw(random, kAngleError_deg) * std::numbers::pi / 180.0;
+  const double tilt_rad = radians(share * draw(random, kAngleError_deg));
   const Vec3 axis_P = std::cos(tilt_rad) * path_P.direction() + std::sin(tilt_rad) * sideways_P();
   return {entry_P, entry_P + path_P.length_mm() * axis_P};
 }
@@ -95,9 +95,8 @@ std::optional<Vec3> aim_bevel(const OperatorCase& the_case) noexcept {
   if (!the_case.bevel_P) return std::nullopt;
   Random random(mix64(the_case.seed + 3));
   const bool forgets = random.uniform() > remembering(the_case);
-  const double error_rad =
-      forgets ? random.uniform(0.0, 2.0 * std::numbers::pi)
-              : (2.0 * random.uniform() - 1.0) * kBevelError_deg * std::numbers::pi / 180.0 * carelessness(the_case);
+  const double error_rad = forgets ? random.uniform(0.0, 2.0 * std::numbers::pi)
+                                   : radians((2.0 * random.uniform() - 1.0) * kBevelError_deg) * carelessness(the_case);
   return Eigen::AngleAxisd(error_rad, the_case.path_P.direction()) * *the_case.bevel_P;
 }
 

@@ -60,7 +60,7 @@ struct EntryLevel {
   bool operator==(const EntryLevel&) const = default;
 };
 
-/// Fibres that a bevel has to part instead of cutting them: its face looks across them (bevel.h).
+/// Fibres that a bevel has to part instead of cutting them: its face looks across them.
 struct BevelRule {
   std::string layer;            ///< Layer of the tissue table whose punctures are judged: "dura".
   std::string fibres;           ///< Tissue class or label along which they run: "csf".
@@ -133,7 +133,7 @@ struct Task {
   double max_posterior_deg = 30.0;      ///< Largest angle by which the skin may face down in the posture. Range 0..90.
   /// Postures in which the puncture is done, the best first; empty: as the patient lies.
   std::vector<anatomy::Posture> postures;
-  std::optional<anatomy::Posture> posture;  ///< The one of an attempt; empty: see postures.h.
+  std::optional<anatomy::Posture> posture;  ///< The one of an attempt; empty: see postures_to_try.
   std::vector<std::string> passes;          ///< Tissues that a path may pass besides skin, fat, muscle and fluid.
   /// Long targets (a dural sac, bile ducts): a target point every so many mm, range 0..100; 0: the middle of each
   /// target.

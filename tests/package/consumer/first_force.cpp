@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "anatomy/phantom/phantom.h"
 #include "anatomy/tissue/tissue_table.h"
 #include "core/result.h"
 #include "haptics/haptic_scene.h"
 #include "haptics/tick.h"
+#include "phantom/phantom.h"
 #include "volume/resample.h"
 
 namespace {
@@ -15,7 +15,7 @@ namespace {
 using namespace trocar;
 
 Result<double> largest_force_n(const char* data_folder) {
-  TROCAR_TRY(anatomy::VirtualPatient made, anatomy::generate_phantom("abdomen", 1, {{96, 80, 80}}));
+  TROCAR_TRY(anatomy::VirtualPatient made, phantom::generate_phantom("abdomen", 1, {{96, 80, 80}}));
   const auto patient = std::make_shared<const anatomy::VirtualPatient>(std::move(made));
   TROCAR_TRY(const anatomy::TissueTable tissues,
              anatomy::load_tissue_table(std::filesystem::path(data_folder) / "tissues.toml"));

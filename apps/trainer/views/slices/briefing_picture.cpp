@@ -96,8 +96,8 @@ std::array<std::size_t, 256> count_labels(const cases::OpenCase& open, BriefingP
 
 }  // namespace
 
-QImage to_qimage(const volume::RgbImage& picture) {
-  static_assert(sizeof(volume::Rgb) == 3);
+QImage to_qimage(const image::RgbImage& picture) {
+  static_assert(sizeof(image::Rgb) == 3);
   return QImage(reinterpret_cast<const uchar*>(picture.pixels.data()), picture.columns, picture.rows,
                 3 * picture.columns, QImage::Format_RGB888)
       .copy();
@@ -106,7 +106,7 @@ QImage to_qimage(const volume::RgbImage& picture) {
 QImage briefing_picture(const cases::OpenCase& open, BriefingPlane plane, const QSize& size, scene::Guidance guidance) {
   const slices::SliceGeometry geometry = geometry_of(open, plane, size);
   slices::SliceBuffers buffers;
-  volume::RgbImage picture;
+  image::RgbImage picture;
   slices::SliceStyle style;
   style.window = {60.0, 350.0};
   style.hides_lesions = guidance == scene::Guidance::kNone;

@@ -36,6 +36,6 @@ std::vector<LegendEntry> briefing_legend(const cases::OpenCase& open, BriefingPl
 void tell_apart(std::vector<LegendEntry>& entries);
 
 /// Converts to a Qt image; copies the pixels.
-QImage to_qimage(const volume::RgbImage& picture);
+QImage to_qimage(const image::RgbImage& picture);
 
 }  // namespace trocar::trainer

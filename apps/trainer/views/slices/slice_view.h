@@ -63,7 +63,7 @@ class SliceView : public QWidget {
   /// Directions in U of an ultrasound volume: lateral, beam, elevation (columns); for the planes of an ultrasound.
   void set_beam_frame(const Mat3& R_UB);
   /// Draws over the image of the CT, below lines and marks; for example a fused volume. Empty: nothing.
-  using Overlay = std::function<void(const volume::SlicePlane&, volume::RgbImage&)>;
+  using Overlay = std::function<void(const volume::SlicePlane&, image::RgbImage&)>;
   void set_overlay(Overlay overlay);
   /// Moves the slice to a point; pans if the point leaves the central part of the image.
   void set_focus(const Vec3& p_P);
@@ -179,7 +179,7 @@ class SliceView : public QWidget {
   slices::SliceStyle style_;
   motion::PatientMotion motion_;
   slices::SliceBuffers buffers_;
-  volume::RgbImage picture_;
+  image::RgbImage picture_;
   bool is_stale_ = true;  ///< The image must be painted again before it is shown.
 
   Drag drag_ = Drag::kNone;

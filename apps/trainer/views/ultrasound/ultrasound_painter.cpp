@@ -226,7 +226,7 @@ void draw_bars(QPainter& painter, const QRectF& place, const ultrasound::ScanAnn
   QImage colours(1, kRows, QImage::Format_RGB32);
   const double b = picture.doppler.baseline;
   for (int r = 0; r < kRows; ++r) {
-    const volume::Rgb c = ultrasound::doppler_colour(b + 1.0 - 2.0 * (r + 0.5) / kRows, picture.doppler);
+    const image::Rgb c = ultrasound::doppler_colour(b + 1.0 - 2.0 * (r + 0.5) / kRows, picture.doppler);
     colours.setPixelColor(0, r, QColor(c[0], c[1], c[2]));
   }
   painter.drawImage(bar, colours);

@@ -5,7 +5,6 @@
 #include <QPainterPath>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "core/files/folders.h"
@@ -367,7 +366,7 @@ std::vector<ultrasound::Vec2> UltrasoundView::guide_line_T() const {
   const ultrasound::ScanGeometry& scan = picture_->scan;
   const double side = guide.is_on_marked_side ? 1.0 : -1.0;
   const ultrasound::Vec2 end_T = scan.line_origin(guide.is_on_marked_side ? scan.lines - 1 : 0);
-  const double angle = guide.angle_deg * std::numbers::pi / 180.0;
+  const double angle = radians(guide.angle_deg);
   const ultrasound::Vec2 start_T = end_T + ultrasound::Vec2(side * kBracket_mm, 0.0);
   const ultrasound::Vec2 along_T(-side * std::sin(angle), std::cos(angle));
   std::vector<ultrasound::Vec2> line_T;

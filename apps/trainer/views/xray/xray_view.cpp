@@ -168,7 +168,7 @@ void XrayView::take(std::shared_ptr<const xray::FluoroscopyFrame> newest, const 
   const bool is_new = newest && (!frame_ || newest->number != frame_->number);
   if (is_new) {
     frame_ = std::move(newest);
-    const xray::GrayImage& gray = frame_->gray;
+    const image::GrayImage& gray = frame_->gray;
     image_ = QImage(gray.pixels.data(), gray.columns, gray.rows, gray.columns, QImage::Format_Grayscale8);
   }
   if (is_new || std::exchange(failure_, failure) != failure) update();

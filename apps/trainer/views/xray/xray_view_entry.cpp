@@ -3,7 +3,7 @@
 #include <QHBoxLayout>
 #include <QToolButton>
 
-#include "anatomy/build_patient.h"
+#include "anatomy/label_statistics.h"
 #include "ui_kit/parts.h"
 #include "views/xray/xray_controls.h"
 #include "views/xray/xray_view.h"

@@ -22,7 +22,7 @@ OpenedDevice open_forcedimension(const DeviceSpec& spec, const DeviceOptions& op
 OpenedDevice open_haply(const DeviceSpec& spec, const DeviceOptions& options);
 
 /// For factories: loads the row options.preset, or the row `own` if options.preset is empty.
-Result<haptics::DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own);
+Result<stylus::DevicePreset> load_preset_of(const DeviceOptions& options, std::string_view own);
 
 inline constexpr double kMmPerM = 1000.0;
 

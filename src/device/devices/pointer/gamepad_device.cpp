@@ -155,7 +155,7 @@ std::unique_ptr<PointerSource> make_gamepad_source() {
 }
 
 OpenedDevice open_gamepad(const DeviceSpec&, const DeviceOptions& options) {
-  TROCAR_TRY(const haptics::DevicePreset preset, load_preset_of(options, "gamepad"));
+  TROCAR_TRY(const stylus::DevicePreset preset, load_preset_of(options, "gamepad"));
   return PolledPointer::open(preset, make_gamepad_source());
 }
 

@@ -13,11 +13,10 @@
 #include "devices/detail/factories.h"
 #include "devices/simulated/detail/hand_motion.h"
 #include "geometry/vec.h"
-#include "haptics/closed_loop/rotation.h"
 #include "realtime/periodic_loop.h"
 
 namespace trocar::devices {
-PointerDevice::PointerDevice(haptics::DevicePreset preset, const PointerParams& params) noexcept
+PointerDevice::PointerDevice(stylus::DevicePreset preset, const PointerParams& params) noexcept
     : preset_(std::move(preset)), params_(params) {}
 
 void PointerDevice::hold(const DeviceHand& hand) noexcept {
@@ -46,9 +45,9 @@ DeviceReading PointerDevice::read(double now_s) noexcept {
     } else {
       const double share = 1.0 - std::exp(-dt_s / std::max(params_.time_constant_s, 1e-6));
       const Vec3 step = clamped_norm(share * (X_DS_wanted.p() - X_DS_.p()), params_.max_speed_mm_per_s * dt_s);
-      const Vec3 left = haptics::rotation_vector(X_DS_wanted.R() * X_DS_.R().transpose());
+      const Vec3 left = rotation_vector(X_DS_wanted.R() * X_DS_.R().transpose());
       const Vec3 turn = clamped_norm(share * left, params_.max_turn_rad_per_s * dt_s);
-      const Eigen::Quaterniond turned(haptics::rotation_from_vector(turn) * X_DS_.R());
+      const Eigen::Quaterniond turned(rotation_from_vector(turn) * X_DS_.R());
       X_DS_ = Pose(turned.normalized().toRotationMatrix(), X_DS_.p() + step);
     }
   }
@@ -61,7 +60,7 @@ bool PointerDevice::write(const Wrench& wrench_D) noexcept {
 }
 
 OpenedDevice open_pointer(const DeviceSpec&, const DeviceOptions& options) {
-  TROCAR_TRY(haptics::DevicePreset preset, load_preset_of(options, "mouse"));
+  TROCAR_TRY(stylus::DevicePreset preset, load_preset_of(options, "mouse"));
   return std::make_unique<PointerDevice>(std::move(preset), PointerParams{});
 }
 
@@ -90,20 +89,20 @@ Pose move_pointer(const Pose& X_DS, const PointerMotion& motion, double dt_s, do
   const Vec3 v_D = motion.v_D + motion.inward_mm_per_s * X_DS.R().col(2);
   Vec3 p_DS = X_DS.p() + dt_s * v_D;
   clamp_norm(p_DS, workspace_radius_mm);
-  const Mat3 R_DS = haptics::rotation_from_vector(dt_s * motion.w_D) * X_DS.R() *
-                    haptics::rotation_from_vector(Vec3(0.0, 0.0, dt_s * motion.turning_rad_per_s));
+  const Mat3 R_DS = rotation_from_vector(dt_s * motion.w_D) * X_DS.R() *
+                    rotation_from_vector(Vec3(0.0, 0.0, dt_s * motion.turning_rad_per_s));
   const Pose moved(Eigen::Quaterniond(R_DS).normalized().toRotationMatrix(), p_DS);
   return moved.is_finite() ? moved : X_DS;  // avoids huge velocities
 }
 
-Result<std::unique_ptr<HapticDevice>> PolledPointer::open(const haptics::DevicePreset& preset,
+Result<std::unique_ptr<HapticDevice>> PolledPointer::open(const stylus::DevicePreset& preset,
                                                           std::unique_ptr<PointerSource> source) {
   std::unique_ptr<PolledPointer> device(new PolledPointer(preset, std::move(source)));
   TROCAR_TRY_STATUS(device->start());
   return device;
 }
 
-PolledPointer::PolledPointer(const haptics::DevicePreset& preset, std::unique_ptr<PointerSource> source)
+PolledPointer::PolledPointer(const stylus::DevicePreset& preset, std::unique_ptr<PointerSource> source)
     : preset_(preset), source_(std::move(source)), name_(source_->name()) {}
 
 PolledPointer::~PolledPointer() {

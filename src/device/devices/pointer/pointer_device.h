@@ -24,9 +24,9 @@ struct PointerParams {
 /// displayed; the tick computes the lag of the pointer. Real-time safe after construction.
 class PointerDevice final : public HapticDevice {
  public:
-  PointerDevice(haptics::DevicePreset preset, const PointerParams& params) noexcept;
+  PointerDevice(stylus::DevicePreset preset, const PointerParams& params) noexcept;
 
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return preset_.name; }
   DeviceReading read(double now_s) noexcept override;
   /// Returns false for an invalid wrench.
@@ -36,7 +36,7 @@ class PointerDevice final : public HapticDevice {
   Status reconnect() override { return {}; }
 
  private:
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
   PointerParams params_;
   DeviceHand hand_;
   Pose X_DS_;
@@ -94,11 +94,11 @@ inline constexpr std::int64_t kPointerForceAge_ns = 20'000'000;
 /// reading has a new pose. Invariant: only that thread uses the source.
 class PolledPointer final : public HapticDevice {
  public:
-  static Result<std::unique_ptr<HapticDevice>> open(const haptics::DevicePreset& preset,
+  static Result<std::unique_ptr<HapticDevice>> open(const stylus::DevicePreset& preset,
                                                     std::unique_ptr<PointerSource> source);
   ~PolledPointer() override;
 
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return name_; }
   DeviceReading read(double now_s) noexcept override;
   bool write(const Wrench& wrench_D) noexcept override;
@@ -107,13 +107,13 @@ class PolledPointer final : public HapticDevice {
   Status reconnect() override;
 
  private:
-  PolledPointer(const haptics::DevicePreset& preset, std::unique_ptr<PointerSource> source);
+  PolledPointer(const stylus::DevicePreset& preset, std::unique_ptr<PointerSource> source);
   Status start();
   void stop() noexcept;
   void run(std::promise<Status>& opened);
   void poll_until_stopped() noexcept;
 
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
   std::unique_ptr<PointerSource> source_;
   std::string name_;
   int wake_ = -1;  ///< Event descriptor that ends the thread's wait.

@@ -124,7 +124,7 @@ std::unique_ptr<PointerSource> make_spacemouse_source() {
 }
 
 OpenedDevice open_spacemouse(const DeviceSpec&, const DeviceOptions& options) {
-  TROCAR_TRY(const haptics::DevicePreset preset, load_preset_of(options, "spacemouse"));
+  TROCAR_TRY(const stylus::DevicePreset preset, load_preset_of(options, "spacemouse"));
   return PolledPointer::open(preset, make_spacemouse_source());
 }
 

@@ -52,7 +52,7 @@ class FaultyDevice final : public HapticDevice {
   FaultyDevice(std::unique_ptr<HapticDevice> device, std::vector<ScheduledFault> faults, std::uint64_t seed,
                Wait wait = {});
 
-  const haptics::DevicePreset& preset() const noexcept override { return device_->preset(); }
+  const stylus::DevicePreset& preset() const noexcept override { return device_->preset(); }
   std::string name() const override { return "faulty:" + device_->name(); }
   DeviceReading read(double now_s) noexcept override;
   bool write(const Wrench& wrench_D) noexcept override;

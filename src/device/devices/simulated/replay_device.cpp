@@ -31,7 +31,7 @@ Pose between(const Pose& a, const Pose& b, double share) noexcept {
 
 }  // namespace
 
-ReplayDevice::ReplayDevice(haptics::DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz)
+ReplayDevice::ReplayDevice(stylus::DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz)
     : preset_(std::move(preset)), name_(std::move(name)), poses_(std::move(poses)), rate_hz_(rate_hz) {
   TROCAR_CHECK(!poses_.empty());
   TROCAR_CHECK(rate_hz_ > 0.0);
@@ -73,7 +73,7 @@ OpenedDevice open_replay(const DeviceSpec& spec, const DeviceOptions& options) {
   if (!(options.motion.rate_hz > 0.0 && options.motion.rate_hz <= kMaxRate_hz)) {
     return fail("the rate of the recorded poses is not in 0..10000 Hz", spec.argument, "record it again");
   }
-  TROCAR_TRY(haptics::DevicePreset preset, load_preset_of(options, "premium"));
+  TROCAR_TRY(stylus::DevicePreset preset, load_preset_of(options, "premium"));
   return std::make_unique<ReplayDevice>(std::move(preset), spec.argument, options.motion.poses, options.motion.rate_hz);
 }
 

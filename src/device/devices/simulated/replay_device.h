@@ -13,9 +13,9 @@ namespace trocar::devices {
 /// constant after the last one. Written wrenches are ignored. Real-time safe after construction.
 class ReplayDevice final : public HapticDevice {
  public:
-  ReplayDevice(haptics::DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz);
+  ReplayDevice(stylus::DevicePreset preset, std::string name, std::vector<Pose> poses, double rate_hz);
 
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "replay:" + name_; }
   DeviceReading read(double now_s) noexcept override;
   /// Ignores the wrench. Returns false for an invalid wrench.
@@ -24,7 +24,7 @@ class ReplayDevice final : public HapticDevice {
   Status reconnect() override { return {}; }
 
  private:
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
   std::string name_;
   std::vector<Pose> poses_;
   double rate_hz_;

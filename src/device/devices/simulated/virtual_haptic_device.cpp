@@ -7,7 +7,6 @@
 #include "devices/simulated/detail/hand_motion.h"
 #include "devices/workspace_map.h"
 #include "geometry/vec.h"
-#include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {
 namespace {
@@ -26,7 +25,7 @@ void push_front(std::array<T, n>& values, const T& value) noexcept {
 
 }  // namespace
 
-VirtualHapticDevice::VirtualHapticDevice(haptics::DevicePreset preset, const SimulatedDeviceParams& params) noexcept
+VirtualHapticDevice::VirtualHapticDevice(stylus::DevicePreset preset, const SimulatedDeviceParams& params) noexcept
     : preset_(std::move(preset)), params_(params) {
   params_.force_delay = std::clamp(params_.force_delay, 0, kMaxDelay);
   params_.reading_delay = std::clamp(params_.reading_delay, 0, kMaxDelay);
@@ -85,7 +84,7 @@ DeviceReading VirtualHapticDevice::read(double now_s) noexcept {
 
 DeviceReading VirtualHapticDevice::tell() noexcept {
   DeviceReading reading;
-  reading.X_DS = haptics::quantise(X_DS(), preset_.encoder);
+  reading.X_DS = stylus::quantise(X_DS(), preset_.encoder);
   if (preset_.sensed_dof == 3) reading.X_DS = Pose::translation(reading.X_DS.p());
   reading.buttons = hand_.buttons;
   return reading;
@@ -103,8 +102,8 @@ Vec3 VirtualHapticDevice::wall_n() const noexcept {
   return -(k * beyond_mm + damping * speed) * outwards;
 }
 
-haptics::StylusHold VirtualHapticDevice::grip(const HandNow& hand) const noexcept {
-  haptics::StylusHold hold;
+stylus::StylusHold VirtualHapticDevice::grip(const HandNow& hand) const noexcept {
+  stylus::StylusHold hold;
   if (!hand_.is_held) return hold;
   hold.X_PS = hand.X_DS;
   hold.velocity_P = hand.v_D;
@@ -119,11 +118,11 @@ haptics::StylusHold VirtualHapticDevice::grip(const HandNow& hand) const noexcep
   return hold;
 }
 
-haptics::VirtualStylusParams VirtualHapticDevice::stylus_params() const noexcept {
-  haptics::VirtualStylusParams params;
+stylus::VirtualStylusParams VirtualHapticDevice::stylus_params() const noexcept {
+  stylus::VirtualStylusParams params;
   params.mass_kg = preset_.apparent_mass_kg;
   params.inertia_kg_mm2 = params_.inertia_kg_mm2;
-  const haptics::DeviceCapability& capability = preset_.capability;
+  const stylus::DeviceCapability& capability = preset_.capability;
   params.weight_n = params_.weight_n.value_or(capability.stylus_weight_n);
   // A gimbal without motors has no lever: it is balanced, and the weight acts at S.
   params.weight_lever_mm = preset_.has_torque() ? params_.weight_lever_mm.value_or(capability.stylus_lever_mm) : 0.0;
@@ -144,13 +143,13 @@ void VirtualHapticDevice::step(double time_s, double dt_s) noexcept {
     return;
   }
   const Wrench push{acting_D_.force_n + wall_n(), acting_D_.torque_nmm};
-  haptics::step_stylus(stylus_, stylus_params(), grip(hand), push, -Vec3::UnitZ(), dt_s);
+  stylus::step_stylus(stylus_, stylus_params(), grip(hand), push, -Vec3::UnitZ(), dt_s);
 }
 
 OpenedDevice open_virtual(const DeviceSpec& spec, const DeviceOptions& options) {
   const std::string& named = spec.argument.empty() ? options.preset : spec.argument;
-  TROCAR_TRY(haptics::DevicePreset preset,
-             haptics::load_device_preset(options.devices_file, named.empty() ? "premium" : named));
+  TROCAR_TRY(stylus::DevicePreset preset,
+             stylus::load_device_preset(options.devices_file, named.empty() ? "premium" : named));
   SimulatedDeviceParams params;  // the stylus keeps its weight, also if another one is compensated
   params.weight_n = preset.capability.stylus_weight_n;
   params.weight_lever_mm = preset.capability.stylus_lever_mm;

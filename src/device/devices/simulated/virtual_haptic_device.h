@@ -5,7 +5,7 @@
 
 #include "devices/haptic_device.h"
 #include "devices/simulated/detail/hand_motion.h"
-#include "haptics/coupling/virtual_stylus.h"
+#include "stylus/virtual_stylus.h"
 
 namespace trocar::devices {
 
@@ -31,9 +31,9 @@ class VirtualHapticDevice final : public HapticDevice {
  public:
   static constexpr int kMaxDelay = 8;
 
-  VirtualHapticDevice(haptics::DevicePreset preset, const SimulatedDeviceParams& params) noexcept;
+  VirtualHapticDevice(stylus::DevicePreset preset, const SimulatedDeviceParams& params) noexcept;
 
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "virtual:" + preset_.name; }
   /// Advances the stylus to `now_s`, in steps of at most 1 ms. A gap counts as at most 0.1 s.
   DeviceReading read(double now_s) noexcept override;
@@ -51,18 +51,18 @@ class VirtualHapticDevice final : public HapticDevice {
 
  private:
   void step(double time_s, double dt_s) noexcept;
-  haptics::StylusHold grip(const HandNow& hand) const noexcept;
-  haptics::VirtualStylusParams stylus_params() const noexcept;
+  stylus::StylusHold grip(const HandNow& hand) const noexcept;
+  stylus::VirtualStylusParams stylus_params() const noexcept;
   Vec3 wall_n() const noexcept;
   DeviceReading tell() noexcept;
 
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
   SimulatedDeviceParams params_;
   DeviceHand hand_;
   bool was_ever_held_ = false;
   double placed_s_ = 0.0;  ///< Time of the last target with is_placed that was applied.
 
-  haptics::VirtualStylusState stylus_;  ///< Its frame P is D.
+  stylus::VirtualStylusState stylus_;  ///< Its frame P is D.
 
   double last_s_ = 0.0;
   bool is_started_ = false;

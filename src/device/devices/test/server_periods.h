@@ -6,21 +6,21 @@
 
 #include "core/files/folders.h"
 #include "devices/simulated/virtual_haptic_device.h"
-#include "haptics/coupling/virtual_stylus.h"
+#include "stylus/virtual_stylus.h"
 
 namespace trocar::testing {
 
 inline constexpr double kDt_s = 0.001;
 
-inline haptics::DevicePreset preset_of(const char* name) {
-  const auto preset = haptics::load_device_preset(data_dir() / "devices.toml", name);
+inline stylus::DevicePreset preset_of(const char* name) {
+  const auto preset = stylus::load_device_preset(data_dir() / "devices.toml", name);
   EXPECT_TRUE(preset) << preset.error().text();
   return *preset;
 }
 
 /// A preset with exact sensors and no friction, for comparison with closed-form solutions.
-inline haptics::DevicePreset ideal() {
-  haptics::DevicePreset preset = preset_of("premium");
+inline stylus::DevicePreset ideal() {
+  stylus::DevicePreset preset = preset_of("premium");
   preset.encoder = {0.0, 0.0};
   preset.friction_n = 0.0;
   preset.viscosity_ns_per_mm = 0.0;
@@ -41,7 +41,7 @@ inline devices::DeviceHand placed_at(const Pose& X_DS) {
 }
 /// The hand of physics.md H1.
 inline devices::DeviceHand holding(const Pose& X_DS, double time_s) {
-  const haptics::StylusHold made = haptics::make_hand();
+  const stylus::StylusHold made = stylus::make_hand();
   devices::DeviceHand hand;
   hand.X_DS = X_DS;
   hand.time_s = time_s;
@@ -56,7 +56,7 @@ inline devices::DeviceHand holding(const Pose& X_DS, double time_s) {
 }
 
 /// The tick's compensation of links and stylus (physics.md W1), from the pose of the reading.
-inline Wrench weight_compensation(const haptics::DevicePreset& preset, const Pose& X_DS) {
+inline Wrench weight_compensation(const stylus::DevicePreset& preset, const Pose& X_DS) {
   const Vec3 lift = Vec3::UnitZ() * preset.capability.stylus_weight_n;
   const Vec3 arm = X_DS.R() * Vec3(0.0, 0.0, -preset.capability.stylus_lever_mm);
   return {lift, arm.cross(lift)};
@@ -67,7 +67,7 @@ struct Bench {
   devices::VirtualHapticDevice device;
   double time_s = 100.0;
 
-  explicit Bench(const haptics::DevicePreset& preset, const devices::SimulatedDeviceParams& params = {})
+  explicit Bench(const stylus::DevicePreset& preset, const devices::SimulatedDeviceParams& params = {})
       : device(preset, params) {
     device.read(time_s);
   }

@@ -12,8 +12,8 @@ namespace {
 
 constexpr const char* kDevice = "openhaptics:Left Device";
 
-haptics::DevicePreset shipped_preset(const char* name) {
-  return haptics::load_device_preset(data_dir() / "devices.toml", name).value();
+stylus::DevicePreset shipped_preset(const char* name) {
+  return stylus::load_device_preset(data_dir() / "devices.toml", name).value();
 }
 
 /// A folder with the text as the profile of a device.
@@ -57,7 +57,7 @@ TEST(StylusProfile, UsesAUniqueFileForEachDevice) {
 
 TEST(StylusProfile, OverridesTheWeightOfThePreset) {
   const TemporaryFolder folder;
-  const haptics::DevicePreset premium = shipped_preset("premium");
+  const stylus::DevicePreset premium = shipped_preset("premium");
   ASSERT_TRUE(save_stylus_profile({"a", "premium", 0.75, 31.0}, folder.path()));
   const auto with = with_stylus_profile(premium, folder.path(), "a");
   ASSERT_TRUE(with) << with.error().text();
@@ -72,7 +72,7 @@ TEST(StylusProfile, OverridesTheWeightOfThePreset) {
 }
 
 TEST(StylusProfile, RefusesAMalformedFileInOneLine) {
-  const haptics::DevicePreset omni = shipped_preset("omni");
+  const stylus::DevicePreset omni = shipped_preset("omni");
   ASSERT_TRUE(with_stylus_profile(omni, Saved(text_with("0.8")).path(), kDevice)) << "the usual text is valid";
   const std::string other = "device = \"x\"\npreset = \"omni\"\nstylus_weight_n = 0.5\n";
   const std::string premium = "device = \"openhaptics:Left Device\"\npreset = \"premium\"\nstylus_weight_n = 0.5\n";

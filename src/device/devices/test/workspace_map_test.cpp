@@ -8,7 +8,6 @@
 #include "core/testing/allocation_guard.h"
 #include "devices/haptic_device.h"
 #include "devices/test/random_vec.h"
-#include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {
 namespace {
@@ -16,15 +15,15 @@ namespace {
 using testing::random_vec;
 
 Pose random_pose(Random& random) {
-  return {haptics::rotation_from_vector(random_vec(random, 1.5)), random_vec(random, 100.0)};
+  return {rotation_from_vector(random_vec(random, 1.5)), random_vec(random, 100.0)};
 }
 double distance(const Pose& a, const Pose& b) {
-  return (a.p() - b.p()).norm() + haptics::rotation_vector(a.R() * b.R().transpose()).norm();
+  return (a.p() - b.p()).norm() + rotation_vector(a.R() * b.R().transpose()).norm();
 }
 
 WorkspaceParams turned_and_scaled() {
   WorkspaceParams params;
-  params.X_WD = Pose(haptics::rotation_from_vector({0.1, -0.4, 1.2}), {300.0, -50.0, 900.0});
+  params.X_WD = Pose(rotation_from_vector({0.1, -0.4, 1.2}), {300.0, -50.0, 900.0});
   params.motion_scale = 2.5;
   params.force_scale = 0.3;
   params.clutch = kButtonSecond;
@@ -33,7 +32,7 @@ WorkspaceParams turned_and_scaled() {
 
 TEST(WorkspaceMap, EqualsTheCalibrationAtUnitScale) {
   WorkspaceParams params;
-  params.X_WD = Pose(haptics::rotation_from_vector({0.3, 0.2, 0.1}), {1.0, 2.0, 3.0});
+  params.X_WD = Pose(rotation_from_vector({0.3, 0.2, 0.1}), {1.0, 2.0, 3.0});
   WorkspaceState state;
   Random random(1);
   const Pose X_DS = random_pose(random);
@@ -45,7 +44,7 @@ TEST(WorkspaceMap, ScalesMotionAboutTheDeviceOriginButNotAngles) {
   WorkspaceState state;
   const Pose middle = map_to_room(state, params, Pose(), 0);
   EXPECT_LT((middle.p() - params.X_WD.p()).norm(), 1e-12);
-  const Mat3 R_DS = haptics::rotation_from_vector({0.0, 0.7, 0.0});
+  const Mat3 R_DS = rotation_from_vector({0.0, 0.7, 0.0});
   const Pose away = map_to_room(state, params, Pose(R_DS, {10.0, 0.0, 0.0}), 0);
   EXPECT_NEAR((away.p() - middle.p()).norm(), 25.0, 1e-9);
   EXPECT_LT((away.R() - params.X_WD.R() * R_DS).norm(), 1e-12);
@@ -94,13 +93,13 @@ TEST(Clutch, NeverTurnsTheDirectionsOfMotionAndForce) {
   const Wrench push_W{{1.0, 2.0, 3.0}, {10.0, 20.0, 30.0}};
   const Wrench before = map_to_device(state, params, push_W);
   map_to_room(state, params, Pose(), kButtonSecond);
-  const Pose X_DS(haptics::rotation_from_vector({1.0, -0.5, 0.3}), {20.0, 30.0, -40.0});
+  const Pose X_DS(rotation_from_vector({1.0, -0.5, 0.3}), {20.0, 30.0, -40.0});
   const Pose from = map_to_room(state, params, X_DS, 0);
   const Pose to = map_to_room(state, params, Pose(X_DS.R(), X_DS.p() + Vec3(0.0, 0.0, 2.0)), 0);
   EXPECT_LT((to.p() - from.p() - params.X_WD.R() * Vec3(0.0, 0.0, 5.0)).norm(), 1e-9);
   EXPECT_LT((map_to_device(state, params, push_W).force_n - before.force_n).norm(), 1e-12);
   // A turn of the hand about a line of the room turns the tool about the same one.
-  const Mat3 turn = haptics::rotation_from_vector({0.0, 0.2, 0.0});
+  const Mat3 turn = rotation_from_vector({0.0, 0.2, 0.0});
   const Pose turned = map_to_room(state, params, Pose(turn * X_DS.R(), X_DS.p()), 0);
   const Mat3 R_WD = params.X_WD.R();
   EXPECT_LT((turned.R() * from.R().transpose() - R_WD * turn * R_WD.transpose()).norm(), 1e-12);
@@ -145,7 +144,7 @@ TEST(WorkspaceMap, NeverAllocates) {
 }
 
 TEST(WorkspaceMap, ReadsItsParametersFromThePreset) {
-  haptics::DevicePreset preset;
+  stylus::DevicePreset preset;
   preset.force_scale = 0.25;
   preset.motion_scale = 3.0;
   preset.clutch_button = 2;

@@ -23,7 +23,7 @@ struct LibraryPlace {
 class DynamicLibrary {
  public:
   /// Binds all symbols at once, so that the first call of a function needs no symbol search. A child process loads the
-  /// library first (detail/library_trial.h). Errors: no library, with package, driver and variable; a file that is no
+  /// library first. Errors: no library, with package, driver and variable; a file that is no
   /// regular one; a library whose loading hangs or ends the program.
   static Result<DynamicLibrary> open(const LibraryPlace& place);
 

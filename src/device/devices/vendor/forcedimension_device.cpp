@@ -118,14 +118,14 @@ Result<std::string> preset_of_type(int type, const std::string& name) {
 /// Invariant: connection_ is set, except after a failed reconnect.
 class ForceDimensionDevice final : public HapticDevice {
  public:
-  ForceDimensionDevice(std::shared_ptr<ServoPace> pace, haptics::DevicePreset preset,
+  ForceDimensionDevice(std::shared_ptr<ServoPace> pace, stylus::DevicePreset preset,
                        std::unique_ptr<dhd::Connection> connection)
       : pace_(std::move(pace)),
         preset_(std::move(preset)),
         type_(connection->system_type()),
         connection_(std::move(connection)) {}
 
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return fmt::format("forcedimension:{}", preset_.name); }
   DeviceReading read(double now_s) noexcept override {
     if (connection_) last_ = connection_->exchange().read(now_s);
@@ -156,7 +156,7 @@ class ForceDimensionDevice final : public HapticDevice {
 
  private:
   const std::shared_ptr<ServoPace> pace_;
-  const haptics::DevicePreset preset_;
+  const stylus::DevicePreset preset_;
   const int type_;
   std::unique_ptr<dhd::Connection> connection_;
   DeviceReading last_;
@@ -171,7 +171,7 @@ Result<std::unique_ptr<HapticDevice>> open_forcedimension_device(const ForceDime
   if (row.empty()) {
     TROCAR_TRY(row, preset_of_type(connection->system_type(), connection->system_name()));
   }
-  TROCAR_TRY(haptics::DevicePreset preset, haptics::load_device_preset(options.devices_file, row));
+  TROCAR_TRY(stylus::DevicePreset preset, stylus::load_device_preset(options.devices_file, row));
   // The vendor's library compensates the weight; a second compensation would lift the device.
   preset.capability.stylus_weight_n = 0.0;
   TROCAR_TRY_STATUS(connection->start(preset.sensed_dof == 6));

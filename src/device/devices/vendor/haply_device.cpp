@@ -42,7 +42,7 @@ const char* advice_for(HaplyCondition condition) noexcept {
 
 }  // namespace
 
-Result<std::unique_ptr<HapticDevice>> HaplyDevice::open(const haptics::DevicePreset& preset,
+Result<std::unique_ptr<HapticDevice>> HaplyDevice::open(const stylus::DevicePreset& preset,
                                                         const std::string& address) {
   std::unique_ptr<HaplyDevice> device(new HaplyDevice(preset, address));
   TROCAR_TRY_STATUS(device->start());
@@ -53,7 +53,7 @@ Result<std::unique_ptr<HapticDevice>> HaplyDevice::open(const haptics::DevicePre
   return device;
 }
 
-HaplyDevice::HaplyDevice(const haptics::DevicePreset& preset, std::string address)
+HaplyDevice::HaplyDevice(const stylus::DevicePreset& preset, std::string address)
     : preset_(preset), address_(std::move(address)) {
   const std::size_t hash = address_.find('#');
   if (hash == std::string::npos) return;
@@ -198,8 +198,8 @@ Status HaplyDevice::reconnect() {
 
 OpenedDevice open_haply(const DeviceSpec& spec, const DeviceOptions& options) {
   const std::string address = spec.argument.empty() ? kHaplyAddress : spec.argument;
-  TROCAR_TRY(haptics::DevicePreset row, load_preset_of(options, "inverse3"));
-  TROCAR_TRY(const haptics::DevicePreset preset,
+  TROCAR_TRY(stylus::DevicePreset row, load_preset_of(options, "inverse3"));
+  TROCAR_TRY(const stylus::DevicePreset preset,
              with_stylus_profile(std::move(row), options.stylus_folder, HaplyDevice::name_of(address)));
   return HaplyDevice::open(preset, address);
 }

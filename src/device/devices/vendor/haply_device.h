@@ -31,10 +31,10 @@ class HaplyDevice final : public HapticDevice {
   /// `address`: "ws://HOST:PORT" for the first Inverse3 of the service, or "ws://HOST:PORT#ID" for the one with this
   /// id. Without a grip the device senses 3 degrees of freedom, independent of the preset. reconnect() opens the same
   /// device; it needs a grip if the device had one.
-  static Result<std::unique_ptr<HapticDevice>> open(const haptics::DevicePreset& preset, const std::string& address);
+  static Result<std::unique_ptr<HapticDevice>> open(const stylus::DevicePreset& preset, const std::string& address);
   ~HaplyDevice() override;
 
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return name_of(address_); }
   static std::string name_of(const std::string& address) { return "haply:" + address; }
   DeviceReading read(double now_s) noexcept override;
@@ -47,7 +47,7 @@ class HaplyDevice final : public HapticDevice {
     std::uint32_t buttons = 0;
   };
 
-  HaplyDevice(const haptics::DevicePreset& preset, std::string address);
+  HaplyDevice(const stylus::DevicePreset& preset, std::string address);
   Status start();
   Status take_first_state(const std::string& message);
   void stop() noexcept;
@@ -59,7 +59,7 @@ class HaplyDevice final : public HapticDevice {
   Vec3 force_now() noexcept;
   void say_goodbye(bool is_answer_due);
 
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
   std::string address_;
   std::string device_id_;  ///< Empty until a device is found.
   bool is_centred_ = false;

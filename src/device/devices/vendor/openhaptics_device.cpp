@@ -44,8 +44,8 @@ void tighten(std::optional<double>& value, const std::optional<double>& said) no
 }
 
 /// The preset, limited to the values that the device reports.
-haptics::DevicePreset tightened(haptics::DevicePreset preset, const hd::Description& said) {
-  haptics::DeviceCapability& capability = preset.capability;
+stylus::DevicePreset tightened(stylus::DevicePreset preset, const hd::Description& said) {
+  stylus::DeviceCapability& capability = preset.capability;
   tighten(capability.peak_force_n, said.peak_force_n);
   tighten(preset.continuous_force_n, said.continuous_force_n);
   tighten(capability.max_stiffness_n_per_mm, said.stiffness_n_per_mm);
@@ -58,7 +58,7 @@ haptics::DevicePreset tightened(haptics::DevicePreset preset, const hd::Descript
     preset.continuous_torque_nmm.reset();
   }
   // A softer spring keeps its damping time.
-  haptics::CouplingParams& coupling = preset.coupling;
+  stylus::CouplingParams& coupling = preset.coupling;
   const double share = std::min(1.0, capability.max_stiffness_n_per_mm / coupling.stiffness_n_per_mm);
   coupling.stiffness_n_per_mm *= share;
   coupling.damping_ns_per_mm *= share;
@@ -72,14 +72,13 @@ std::string name_of(const OpenHapticsOptions& options) {
 /// Invariant: connection_ is set, except after a failed reconnect.
 class OpenHapticsDevice final : public HapticDevice {
  public:
-  OpenHapticsDevice(OpenHapticsOptions options, haptics::DevicePreset preset,
-                    std::unique_ptr<hd::Connection> connection)
+  OpenHapticsDevice(OpenHapticsOptions options, stylus::DevicePreset preset, std::unique_ptr<hd::Connection> connection)
       : options_(std::move(options)),
         preset_(std::move(preset)),
         model_(connection->description().model),
         connection_(std::move(connection)) {}
 
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return name_of(options_); }
   DeviceReading read(double now_s) noexcept override {
     if (connection_) last_ = connection_->exchange().read(now_s);
@@ -108,7 +107,7 @@ class OpenHapticsDevice final : public HapticDevice {
 
  private:
   const OpenHapticsOptions options_;
-  const haptics::DevicePreset preset_;
+  const stylus::DevicePreset preset_;
   const std::string model_;
   std::unique_ptr<hd::Connection> connection_;
   DeviceReading last_;
@@ -125,8 +124,8 @@ Result<std::unique_ptr<HapticDevice>> open_openhaptics_device(const OpenHapticsO
   if (options.preset.empty()) {
     TROCAR_TRY(options.preset, preset_of_model(said.model));
   }
-  TROCAR_TRY(const haptics::DevicePreset row, haptics::load_device_preset(options.devices_file, options.preset));
-  TROCAR_TRY(haptics::DevicePreset preset,
+  TROCAR_TRY(const stylus::DevicePreset row, stylus::load_device_preset(options.devices_file, options.preset));
+  TROCAR_TRY(stylus::DevicePreset preset,
              with_stylus_profile(tightened(row, said), options.stylus_folder, name_of(options)));
   return std::make_unique<OpenHapticsDevice>(std::move(options), std::move(preset), std::move(connection));
 }

@@ -28,7 +28,7 @@ struct Seen {
 class SeenDevice final : public devices::HapticDevice {
  public:
   explicit SeenDevice(Seen& seen) : seen_(seen), preset_(device_preset()) {}
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "seen"; }
   devices::DeviceReading read(double) noexcept override { return {}; }
   bool write(const Wrench& wrench_D) noexcept override {
@@ -40,7 +40,7 @@ class SeenDevice final : public devices::HapticDevice {
 
  private:
   Seen& seen_;
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
 };
 
 /// Runs it in a child process. The signal that ended the child, 0: none.

@@ -36,7 +36,7 @@ TEST(DeviceTrial, WritesNoForceWithoutARequest) {
 
 TEST(DeviceTrial, PushesUpOnceWithinTheDeviceLimit) {
   for (const char* name : {"omni", "premium"}) {
-    const haptics::DevicePreset preset = testing::device_preset(name);
+    const stylus::DevicePreset preset = testing::device_preset(name);
     testing::ScriptedDevice device(preset);
     DeviceTrial trial(device, 1000.0);
     EXPECT_LE(trial.push_n(), 1.0);

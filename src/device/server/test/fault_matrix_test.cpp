@@ -56,7 +56,7 @@ struct Kind {
   const char* preset;
 };
 
-std::unique_ptr<devices::HapticDevice> make_device(const Kind& kind, const haptics::DevicePreset& preset) {
+std::unique_ptr<devices::HapticDevice> make_device(const Kind& kind, const stylus::DevicePreset& preset) {
   const std::string name = kind.name;
   if (name == "virtual")
     return std::make_unique<devices::VirtualHapticDevice>(preset, devices::SimulatedDeviceParams{});
@@ -85,7 +85,7 @@ class FaultMatrix : public ::testing::TestWithParam<std::tuple<Kind, std::size_t
 TEST_P(FaultMatrix, EndsAtZeroInTimeAndStaysWithinItsLimits) {
   const auto& [kind, number] = GetParam();
   const Expected& expected = all_faults()[number];
-  const haptics::DevicePreset preset = testing::device_preset(kind.preset);
+  const stylus::DevicePreset preset = testing::device_preset(kind.preset);
   double waited_s = 0.0;
   devices::FaultyDevice device(make_device(kind, preset), {*devices::parse_fault(expected.schedule)}, 7,
                                {count_wait, &waited_s});

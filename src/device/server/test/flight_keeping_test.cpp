@@ -20,7 +20,7 @@ using testing::wait_for;
 class LosableDevice final : public devices::HapticDevice {
  public:
   explicit LosableDevice(const std::atomic<bool>& is_lost) : is_lost_(is_lost) {}
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "losable"; }
   devices::DeviceReading read(double) noexcept override {
     devices::DeviceReading reading;
@@ -31,7 +31,7 @@ class LosableDevice final : public devices::HapticDevice {
   Status reconnect() override { return {}; }
 
  private:
-  haptics::DevicePreset preset_ = testing::device_preset();
+  stylus::DevicePreset preset_ = testing::device_preset();
   const std::atomic<bool>& is_lost_;
 };
 

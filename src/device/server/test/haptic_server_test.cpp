@@ -209,7 +209,7 @@ class ReopenedDevice final : public devices::HapticDevice {
     std::atomic<double> largest_rise_n{0.0};
   };
   explicit ReopenedDevice(Log& log) : preset_(testing::device_preset()), log_(log) {}
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "reopened"; }
   devices::DeviceReading read(double now_s) noexcept override {
     devices::DeviceReading reading;
@@ -230,7 +230,7 @@ class ReopenedDevice final : public devices::HapticDevice {
   }
 
  private:
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
   Log& log_;
   double last_n_ = 0.0;
 };

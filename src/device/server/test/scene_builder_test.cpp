@@ -7,8 +7,8 @@
 #include <new>
 
 #include "anatomy/tissue/tissue_settings.h"
-#include "haptics/coupling/device_preset.h"
 #include "server/test/servo_rig.h"
+#include "stylus/device_preset.h"
 
 namespace trocar::server {
 namespace {
@@ -155,7 +155,7 @@ TEST(SceneBuilder, RestartsWithAnotherForceModel) {
 }
 
 TEST(SceneBuilder, ClipsTheCouplingToTheScaledDeviceLimit) {
-  haptics::DevicePreset preset = device_preset("premium");
+  stylus::DevicePreset preset = device_preset("premium");
   preset.motion_scale = 5.0;
   SceneBuilder builder(layered_opener(), data_file("tissues.toml"), preset);
   const auto scene = builder.load(layered_request());
@@ -166,7 +166,7 @@ TEST(SceneBuilder, ClipsTheCouplingToTheScaledDeviceLimit) {
 
 TEST(SceneBuilder, RefusesACouplingBeyondTheDeviceLimits) {
   for (const char* device : {"premium", "omni", "omega7", "falcon", "mouse"}) {
-    const haptics::DevicePreset preset = device_preset(device);
+    const stylus::DevicePreset preset = device_preset(device);
     SceneBuilder builder = make_builder(device);
     const auto before = builder.load(layered_request());
     ASSERT_TRUE(before) << before.error().text();
@@ -182,7 +182,7 @@ TEST(SceneBuilder, RefusesACouplingBeyondTheDeviceLimits) {
       expect_refused({.coupling_damping_ns_per_mm = damping}, "coupling.damp");
     for (const double stiffness : {19.0, 0.001, -1.0})
       expect_refused({.coupling_stiffness_n_per_mm = stiffness}, "coupling.stiff");
-    const haptics::CouplingLimits limits = haptics::limits_of(preset);
+    const stylus::CouplingLimits limits = stylus::limits_of(preset);
     EXPECT_TRUE(builder.change({.coupling_stiffness_n_per_mm = limits.most_n_per_mm})) << device;
     EXPECT_FALSE(builder.change({.coupling_stiffness_n_per_mm = 1.01 * limits.most_n_per_mm})) << device;
     EXPECT_TRUE(builder.change({.coupling_damping_ns_per_mm = limits.most_ns_per_mm})) << device;

@@ -15,8 +15,8 @@ namespace trocar::testing {
 inline std::filesystem::path data_file(const char* name) {
   return testing::source_dir() / "data" / name;
 }
-inline haptics::DevicePreset device_preset(const char* name = "premium") {
-  auto preset = haptics::load_device_preset(data_file("devices.toml"), name);
+inline stylus::DevicePreset device_preset(const char* name = "premium") {
+  auto preset = stylus::load_device_preset(data_file("devices.toml"), name);
   TROCAR_CHECK(preset.has_value());
   return *preset;
 }
@@ -57,8 +57,8 @@ inline Pose needle_at_depth(double depth_mm) {
 /// A device with a pose set by the test; it records the last written wrench.
 class ScriptedDevice final : public devices::HapticDevice {
  public:
-  explicit ScriptedDevice(haptics::DevicePreset preset) : preset_(std::move(preset)) {}
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  explicit ScriptedDevice(stylus::DevicePreset preset) : preset_(std::move(preset)) {}
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "scripted"; }
   devices::DeviceReading read(double) noexcept override { return reading; }
   bool write(const Wrench& wrench_D) noexcept override {
@@ -72,7 +72,7 @@ class ScriptedDevice final : public devices::HapticDevice {
   bool takes_writes = true;
 
  private:
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
 };
 
 /// A servo with a scripted device over the layered patient, driven in simulated time.
@@ -125,7 +125,7 @@ class ServoRig {
   /// Runs until the safe start is over and forces are on, outside the body.
   void start() { hold(2.0); }
 
-  haptics::DevicePreset preset;
+  stylus::DevicePreset preset;
   ScriptedDevice device;
   server::SceneBuilder builder;
   server::ServoScene scene;

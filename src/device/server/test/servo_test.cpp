@@ -292,7 +292,7 @@ TEST(Servo, WeakensTheCouplingOfASlowLoopAtOnce) {
     EXPECT_EQ((first.actions & haptics::kGateSlowLoop) != 0, is_own);
     const ServoRecord second = rig.step();
     // 0.0035 N s/mm of device and loose hand over 1.5 k_c * 9 ms - b_c.
-    const haptics::CouplingParams coupling = testing::device_preset().coupling;
+    const stylus::CouplingParams coupling = testing::device_preset().coupling;
     const double lost_ns_per_mm = 1.5 * coupling.stiffness_n_per_mm * 0.009 - coupling.damping_ns_per_mm;
     EXPECT_NEAR(second.sample.coupling_share, 0.0035 / lost_ns_per_mm, 1e-3);
     EXPECT_LT(second.written_D.force_n.norm(), 0.7 * before_n);

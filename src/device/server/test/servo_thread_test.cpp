@@ -18,7 +18,7 @@ using testing::wait_for;
 /// A device that waits in write() while `is_blocked`, and counts writes and placements.
 class BlockingDevice final : public devices::HapticDevice {
  public:
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "blocking"; }
   devices::DeviceReading read(double) noexcept override {
     devices::DeviceReading reading;
@@ -39,7 +39,7 @@ class BlockingDevice final : public devices::HapticDevice {
   std::atomic<double> force_n{0.0};
 
  private:
-  haptics::DevicePreset preset_ = testing::device_preset();
+  stylus::DevicePreset preset_ = testing::device_preset();
 };
 
 /// The real-time thread alone; the test is the link thread and the control thread.
@@ -83,7 +83,7 @@ class ServoThreadRig {
 
  private:
   /// A busy machine and a blocked device latch no fault: only commands turn the forces off.
-  static ServoParams lenient(const haptics::DevicePreset& preset) {
+  static ServoParams lenient(const stylus::DevicePreset& preset) {
     ServoParams params = servo_params(preset);
     params.max_hole_s = 1e6;
     params.gate.max_slow_s = 10.0;

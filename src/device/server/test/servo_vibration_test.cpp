@@ -23,7 +23,7 @@ struct Outcome {
   double after_n = 0.0;    ///< Largest force from 25 ms after the fault on.
 };
 
-Outcome run(const ServoScene& scene, const haptics::DevicePreset& preset, const Motion& motion, double seconds) {
+Outcome run(const ServoScene& scene, const stylus::DevicePreset& preset, const Motion& motion, double seconds) {
   devices::VirtualHapticDevice device(preset, {});
   Servo servo(device, servo_params(preset));
   Outcome outcome;
@@ -66,7 +66,7 @@ ServoScene load(SceneBuilder& builder, const std::string& model, const std::stri
   return *scene;
 }
 
-SceneBuilder builder_for(const haptics::DevicePreset& preset) {
+SceneBuilder builder_for(const stylus::DevicePreset& preset) {
   return {testing::layered_opener(), testing::data_file("tissues.toml"), preset};
 }
 
@@ -88,7 +88,7 @@ ServoScene with_damping(const ServoScene& scene, double damping_ns_per_mm) {
   return {changed, scene.number, scene.continues};
 }
 
-SceneBuilder builder_with_bone(const haptics::DevicePreset& preset) {
+SceneBuilder builder_with_bone(const stylus::DevicePreset& preset) {
   return {
       [](const std::string&, std::uint64_t, const Progress&) -> Result<std::shared_ptr<const anatomy::VirtualPatient>> {
         return testing::layered_patient({{0, testing::kFat}, {12, testing::kMuscle}, {16, testing::kBone}});
@@ -99,7 +99,7 @@ SceneBuilder builder_with_bone(const haptics::DevicePreset& preset) {
 // 1 N s/mm is 200 times what the device bears. In soft tissue the needle slides along with the device and nothing
 // vibrates; bone holds it.
 TEST(ServoVibration, FaultsOnADamperBeyondTheDeviceLimit) {
-  const haptics::DevicePreset preset = testing::device_preset();
+  const stylus::DevicePreset preset = testing::device_preset();
   SceneBuilder builder = builder_with_bone(preset);
   const ServoScene good = load(builder, "proxy");
   const ServoScene bad = with_damping(good, 1.0);
@@ -119,7 +119,7 @@ TEST(ServoVibration, FaultsOnADamperBeyondTheDeviceLimit) {
 class GoodMotion : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(GoodMotion, RaisesNoVibrationOrMotionFault) {
-  const haptics::DevicePreset preset = testing::device_preset(GetParam());
+  const stylus::DevicePreset preset = testing::device_preset(GetParam());
   SceneBuilder builder = builder_for(preset);
   Random random(3);
   std::array<double, 6> phases{};
@@ -155,7 +155,7 @@ TEST_P(GoodMotion, RaisesNoVibrationOrMotionFault) {
 }
 
 TEST_P(GoodMotion, PalpationRaisesNoVibrationFault) {
-  const haptics::DevicePreset preset = testing::device_preset(GetParam());
+  const stylus::DevicePreset preset = testing::device_preset(GetParam());
   for (const char* tool : {"finger", "probe"}) {
     SceneBuilder builder = builder_for(preset);
     const ServoScene scene = load(builder, "insertion", tool);

@@ -14,7 +14,7 @@ namespace trocar::server {
 namespace {
 
 TEST(StylusWeighing, FindsWeightFrictionAndLeverOfEveryPreset) {
-  for (const haptics::DevicePreset& preset : presets_with_force()) {
+  for (const stylus::DevicePreset& preset : presets_with_force()) {
     for (const double weight_n : {preset.capability.stylus_weight_n, 0.5 + kAttachment_n}) {
       const Course course = weigh(preset, weighing(weight_n, 35.0));
       expect_weight(course, weight_n, preset.name);
@@ -37,7 +37,7 @@ TEST(StylusWeighing, FindsAnAttachmentInFrontOfTheGrip) {
 }
 
 TEST(StylusWeighing, CancelsFrictionAsLargeAsTheWeight) {
-  haptics::DevicePreset preset = testing::device_preset("falcon");
+  stylus::DevicePreset preset = testing::device_preset("falcon");
   preset.friction_n = 0.45;
   const Course course = weigh(preset, weighing(0.4));
   expect_weight(course, 0.4, "falcon");
@@ -56,9 +56,9 @@ TEST(StylusWeighing, HoldsEveryPresetQuietly) {
   constexpr double kSettled_s = 4.0;       // the hand has let go for 3 s
   constexpr double kFast_mm_per_s = 25.0;  // 2 mm/s and slips after sticking; an oscillation reaches hundreds
   constexpr double kBeyond_n = 0.4;        // above weight and friction: single counts of 0.06 mm in a period
-  for (const haptics::DevicePreset& given : presets_with_force()) {
+  for (const stylus::DevicePreset& given : presets_with_force()) {
     for (const auto& [mass_kg, delay] : {std::pair(0.045, 3), std::pair(0.5, 1), std::pair(0.5, 3)}) {
-      haptics::DevicePreset preset = given;
+      stylus::DevicePreset preset = given;
       preset.apparent_mass_kg = mass_kg;
       SimulatedDeviceParams params = weighing(0.5 + kAttachment_n);
       params.force_delay = delay;
@@ -88,7 +88,7 @@ class TiltedDevice final : public devices::HapticDevice {
  public:
   TiltedDevice(VirtualHapticDevice& device, double tilt_rad)
       : device_(device), R_(Eigen::AngleAxisd(tilt_rad, Vec3::UnitX())) {}
-  const haptics::DevicePreset& preset() const noexcept override { return device_.preset(); }
+  const stylus::DevicePreset& preset() const noexcept override { return device_.preset(); }
   std::string name() const override { return "tilted"; }
   devices::DeviceReading read(double now_s) noexcept override {
     devices::DeviceReading reading = device_.read(now_s);
@@ -118,7 +118,7 @@ TEST(StylusWeighing, ShowsATiltedBase) {
 }
 
 /// Distance that a released stylus moves within a time while the server compensates the preset's weight.
-double drift_mm(const haptics::DevicePreset& compensated, const SimulatedDeviceParams& params, double for_s) {
+double drift_mm(const stylus::DevicePreset& compensated, const SimulatedDeviceParams& params, double for_s) {
   VirtualHapticDevice device(compensated, params);
   SceneBuilder builder(testing::layered_opener(), testing::data_file("tissues.toml"), compensated);
   const ServoScene scene = builder.load(testing::layered_request()).value();
@@ -145,7 +145,7 @@ double drift_mm(const haptics::DevicePreset& compensated, const SimulatedDeviceP
 
 TEST(StylusWeighing, CompensatesAWeighedAttachment) {
   for (const char* name : {"premium", "desktop", "sigma7", "inverse3"}) {
-    haptics::DevicePreset preset = testing::device_preset(name);
+    stylus::DevicePreset preset = testing::device_preset(name);
     const SimulatedDeviceParams params = weighing(preset.capability.stylus_weight_n + kAttachment_n, 10.0);
     EXPECT_GT(drift_mm(preset, params, 0.25), 15.0) << name << ": it sinks with the preset's weight";
     const Course course = weigh(preset, params);
@@ -182,7 +182,7 @@ TEST(StylusWeighing, AllocatesNothing) {
 
 TEST(StylusWeighing, StaysWithinItsForceForAnyReading) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const haptics::DevicePreset preset = testing::device_preset("sigma7");
+  const stylus::DevicePreset preset = testing::device_preset("sigma7");
   const haptics::GateParams gate;
   for (const double odd : {kNan, 0.0, -1.0, 1e300, 1e-300}) {
     StylusWeighing weighing(preset, gate);

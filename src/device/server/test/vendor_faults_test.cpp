@@ -55,7 +55,7 @@ class Hardware {
 /// The layered patient comes to the needle, wherever the device holds it.
 class ApproachingPatient {
  public:
-  explicit ApproachingPatient(const haptics::DevicePreset& preset)
+  explicit ApproachingPatient(const stylus::DevicePreset& preset)
       : builder_(testing::layered_opener(), testing::data_file("tissues.toml"), preset) {
     auto made = builder_.load(testing::layered_request());
     TROCAR_CHECK(made.has_value());
@@ -105,7 +105,7 @@ void run_trial(const VendorFault& expected, Trial& trial) {
     options.faults = {*devices::parse_fault(expected.schedule)};
     auto device = devices::open_device(*devices::parse_device_spec(hardware.spec(expected.kind)), options);
     ASSERT_TRUE(device) << device.error().text();
-    const haptics::DevicePreset& preset = (*device)->preset();
+    const stylus::DevicePreset& preset = (*device)->preset();
     ServoParams params = servo_params(preset);
     params.gate.max_unread_s = kSilent_s;
     params.max_hole_s = 10.0;

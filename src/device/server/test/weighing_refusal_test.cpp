@@ -12,13 +12,13 @@ namespace {
 
 TEST(StylusWeighingRefuses, ADeviceWithoutForceOrWithSelfSupport) {
   EXPECT_EQ(refusal_of(weigh(testing::device_preset("mouse"), {})), WeighRefusal::kNoForce);
-  haptics::DevicePreset carried = testing::device_preset("omega6");
+  stylus::DevicePreset carried = testing::device_preset("omega6");
   carried.capability.stylus_weight_n = 0.0;
   EXPECT_EQ(refusal_of(weigh(carried, {})), WeighRefusal::kCarriedByDevice);
 }
 
 TEST(StylusWeighingRefuses, AWeightAboveTheContinuousForce) {
-  const haptics::DevicePreset omni = testing::device_preset("omni");  // continuously 0.88 N
+  const stylus::DevicePreset omni = testing::device_preset("omni");  // continuously 0.88 N
   EXPECT_EQ(refusal_of(weigh(omni, weighing(0.85))), WeighRefusal::kNone);
   for (const double weight_n : {0.95, 1.2, 2.0}) {
     const Course course = weigh(omni, weighing(weight_n));

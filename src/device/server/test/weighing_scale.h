@@ -26,10 +26,10 @@ inline constexpr double kAttachment_n = 0.3;  // a needle's grip
 
 inline const Pose kLevel(rotation_between(Vec3::UnitZ(), Vec3::UnitY()), Vec3::Zero());
 
-inline std::vector<haptics::DevicePreset> presets_with_force() {
-  auto presets = haptics::load_device_presets(testing::data_file("devices.toml"));
+inline std::vector<stylus::DevicePreset> presets_with_force() {
+  auto presets = stylus::load_device_presets(testing::data_file("devices.toml"));
   TROCAR_CHECK(presets.has_value());
-  std::erase_if(*presets, [](const haptics::DevicePreset& preset) { return !preset.has_force(); });
+  std::erase_if(*presets, [](const stylus::DevicePreset& preset) { return !preset.has_force(); });
   TROCAR_CHECK(presets->size() == 9);
   return *presets;
 }
@@ -87,7 +87,7 @@ class Scale {
   double period_s_;
 };
 
-inline Course weigh(const haptics::DevicePreset& preset, const SimulatedDeviceParams& params, const Pose& X_DS = kLevel,
+inline Course weigh(const stylus::DevicePreset& preset, const SimulatedDeviceParams& params, const Pose& X_DS = kLevel,
                     double rate_hz = 1000.0) {
   VirtualHapticDevice device(preset, params);
   return Scale(device, rate_hz).weigh(X_DS);

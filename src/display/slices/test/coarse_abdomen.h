@@ -1,12 +1,12 @@
 #pragma once
 
-#include "anatomy/phantom/phantom.h"
+#include "phantom/phantom.h"
 
 namespace trocar::slices {
 
 /// The embedded abdomen on a coarse grid, for fast generation.
 inline const anatomy::VirtualPatient& coarse_abdomen() {
-  static const anatomy::VirtualPatient patient = anatomy::generate_phantom("abdomen", 1, {{90, 72, 64}}).value();
+  static const anatomy::VirtualPatient patient = phantom::generate_phantom("abdomen", 1, {{90, 72, 64}}).value();
   return patient;
 }
 

@@ -5,7 +5,7 @@
 namespace trocar::slices {
 namespace {
 
-constexpr volume::Rgb kCt{100, 100, 100};
+constexpr image::Rgb kCt{100, 100, 100};
 
 /// A cube of 20 mm with gray 200 in its frame U, whose half x > 10 mm was not imaged.
 class FuseUltrasound : public ::testing::Test {
@@ -19,8 +19,8 @@ class FuseUltrasound : public ::testing::Test {
     plane_.rows = 21;
   }
 
-  volume::RgbImage fused(const FusionStyle& style) {
-    volume::RgbImage picture(plane_.columns, plane_.rows, kCt);
+  image::RgbImage fused(const FusionStyle& style) {
+    image::RgbImage picture(plane_.columns, plane_.rows, kCt);
     fuse_ultrasound({gray_, imaged_, 255.0, Pose::translation(Vec3(100.0, 0.0, 0.0))}, plane_, style, picture);
     return picture;
   }
@@ -31,12 +31,12 @@ class FuseUltrasound : public ::testing::Test {
 };
 
 TEST_F(FuseUltrasound, DrawsAtItsPoseWhereItWasImaged) {
-  const volume::RgbImage picture = fused({FusionKind::kBlend, 0.5, 15.0});
+  const image::RgbImage picture = fused({FusionKind::kBlend, 0.5, 15.0});
   EXPECT_EQ(picture.at(9, 5), kCt) << "before its first voxel";
   EXPECT_NE(picture.at(10, 5), kCt);
   EXPECT_NE(picture.at(20, 5), kCt);
   EXPECT_EQ(picture.at(21, 5), kCt) << "not imaged";
-  const volume::Rgb orange = picture.at(15, 5);
+  const image::Rgb orange = picture.at(15, 5);
   EXPECT_GT(orange[0], orange[1]);
   EXPECT_GT(orange[1], orange[2]);
 }
@@ -47,8 +47,8 @@ TEST_F(FuseUltrasound, ZeroShareAndOffShowOnlyTheCt) {
 }
 
 TEST_F(FuseUltrasound, CheckerboardAlternatesEveryField) {
-  const volume::RgbImage picture = fused({FusionKind::kCheckerboard, 1.0, 5.0});
-  const volume::Rgb us{200, 200, 200};
+  const image::RgbImage picture = fused({FusionKind::kCheckerboard, 1.0, 5.0});
+  const image::Rgb us{200, 200, 200};
   int us_pixels = 0;
   for (int column = 10; column <= 19; ++column)
     for (int row = 0; row < 10; ++row) {

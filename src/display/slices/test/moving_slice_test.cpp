@@ -42,13 +42,13 @@ TEST(MovingSlice, ShowsATaggedVoxelAtItsMovedPosition) {
     plane.origin_P = {-40.0, now_P.y(), -40.0};
     for (const bool has_outlines : {false, true}) {
       style.has_outlines = has_outlines;
-      volume::RgbImage image;
+      image::RgbImage image;
       paint_slice(patient, plane, style, buffers, image, motion);
       Vec3 sum = Vec3::Zero();
       double count = 0.0;
       for (int row = 0; row < image.rows; ++row)
         for (int column = 0; column < image.columns; ++column) {
-          const volume::Rgb& pixel =
+          const image::Rgb& pixel =
               image.pixels[static_cast<std::size_t>(row) * 160 + static_cast<std::size_t>(column)];
           if (has_outlines ? pixel[1] < pixel[0] + 60 : pixel[0] < 230) continue;
           sum += plane.origin_P + column * plane.step_u_P + row * plane.step_v_P;

@@ -39,9 +39,9 @@ TEST(PaintSlice, ShowsTheLiverOnTheImageLeft) {
   SliceGeometry at_liver = view;
   at_liver.center_P.z() = liver_P.z();
   SliceBuffers buffers;
-  volume::RgbImage picture;
+  image::RgbImage picture;
   paint_slice(coarse_abdomen(), at_liver.plane(), {{}, 1.0, false}, buffers, picture);
-  const volume::Rgb liver = coarse_abdomen().label_table.find("liver")->color;
+  const image::Rgb liver = coarse_abdomen().label_table.find("liver")->color;
   double sum_u = 0.0;
   double count = 0.0;
   for (int v = 0; v < picture.rows; ++v)
@@ -55,10 +55,10 @@ TEST(PaintSlice, LaysColoursOverGrayByTheirOpacity) {
   const Vec3 liver_P = middle_of(coarse_abdomen(), "liver");
   const SliceGeometry view = view_of(liver_P, needle_axes(Vec3(0.5, 0.8, 0.3).normalized(), NeedlePlane::kAlong));
   SliceBuffers buffers;
-  volume::RgbImage plain;
+  image::RgbImage plain;
   paint_slice(coarse_abdomen(), view.plane(), {{}, 0.0, false}, buffers, plain);
   for (const double opacity : {0.25, 0.5, 1.0}) {
-    volume::RgbImage picture;
+    image::RgbImage picture;
     paint_slice(coarse_abdomen(), view.plane(), {{}, opacity, false}, buffers, picture);
     for (int v = 0; v < picture.rows; v += 3)
       for (int u = 0; u < picture.columns; u += 3) {
@@ -76,9 +76,9 @@ TEST(PaintSlice, LaysColoursOverGrayByTheirOpacity) {
 TEST(PaintSlice, OutlinesStructuresInFullColour) {
   const SliceGeometry view = view_of(middle_of(coarse_abdomen(), "liver"), slice_axes(SliceOrientation::kCoronal));
   SliceBuffers buffers;
-  volume::RgbImage picture;
+  image::RgbImage picture;
   paint_slice(coarse_abdomen(), view.plane(), {{}, 0.0, true}, buffers, picture);
-  const volume::Rgb liver = coarse_abdomen().label_table.find("liver")->color;
+  const image::Rgb liver = coarse_abdomen().label_table.find("liver")->color;
   int outlined = 0;
   int inside = 0;
   for (int v = 1; v + 1 < picture.rows; ++v)
@@ -101,12 +101,12 @@ TEST(PaintSlice, HidesLesionsInExamsByPaintingTheirOrgan) {
   const SliceGeometry view = view_of(middle_of(coarse_abdomen(), lesion.name), slice_axes(SliceOrientation::kAxial));
   const auto painted = [&](const SliceStyle& style) {
     SliceBuffers buffers;
-    volume::RgbImage picture;
+    image::RgbImage picture;
     paint_slice(coarse_abdomen(), view.plane(), style, buffers, picture);
     return picture;
   };
-  const volume::RgbImage open = painted({{}, 1.0, true}), exam = painted({{}, 1.0, true, true});
-  const volume::Rgb liver = coarse_abdomen().label_table.find("liver")->color;
+  const image::RgbImage open = painted({{}, 1.0, true}), exam = painted({{}, 1.0, true, true});
+  const image::Rgb liver = coarse_abdomen().label_table.find("liver")->color;
   int lesions = 0;
   for (std::size_t n = 0; n < open.pixels.size(); ++n) {
     if (open.pixels[n] == lesion.color) ++lesions;
@@ -118,7 +118,7 @@ TEST(PaintSlice, HidesLesionsInExamsByPaintingTheirOrgan) {
 TEST(PaintSlice, NeverAllocatesAfterTheFirstImage) {
   SliceGeometry view = view_of(middle_of(coarse_abdomen(), "liver"), slice_axes(SliceOrientation::kAxial));
   SliceBuffers buffers;
-  volume::RgbImage picture;
+  image::RgbImage picture;
   paint_slice(coarse_abdomen(), view.plane(), {}, buffers, picture);
   const testing::AllocationGuard guard;
   for (int n = 0; n < 5; ++n) {
@@ -131,10 +131,10 @@ TEST(PaintSlice, NeverAllocatesAfterTheFirstImage) {
 
 TEST(PaintSlice, ShowsAirFarFromThePatient) {
   SliceBuffers buffers;
-  volume::RgbImage picture;
+  image::RgbImage picture;
   const SliceGeometry view = view_of({1e5, 0, 0}, slice_axes(SliceOrientation::kSagittal));
   paint_slice(coarse_abdomen(), view.plane(), {}, buffers, picture);
-  EXPECT_EQ(picture.pixels, std::vector<volume::Rgb>(picture.pixels.size(), volume::Rgb{0, 0, 0}));
+  EXPECT_EQ(picture.pixels, std::vector<image::Rgb>(picture.pixels.size(), image::Rgb{0, 0, 0}));
 }
 
 }  // namespace

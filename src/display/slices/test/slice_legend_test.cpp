@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "image/image.h"
 #include "slices/slice_picture.h"
-#include "volume/image.h"
 
 namespace trocar::slices {
 namespace {
@@ -27,15 +27,15 @@ SlicePicture with_legend(SliceOrientation orientation, int size_px = 600) {
   return picture;
 }
 
-bool is_white(const volume::RgbImage& image, int column, int row) {
-  return image.at(column, row) == volume::Rgb{255, 255, 255};
+bool is_white(const image::RgbImage& image, int column, int row) {
+  return image.at(column, row) == image::Rgb{255, 255, 255};
 }
 
 /// Whether a letter stands with its top left dot at a pixel.
-bool reads(const volume::RgbImage& image, int column, int row, char letter, int dot) {
-  for (int r = 0; r < volume::kGlyphHeight; ++r)
-    for (int c = 0; c < volume::kGlyphWidth; ++c) {
-      const bool is_dot = (volume::glyph_row(letter, r) >> (volume::kGlyphWidth - 1 - c) & 1U) != 0;
+bool reads(const image::RgbImage& image, int column, int row, char letter, int dot) {
+  for (int r = 0; r < image::kGlyphHeight; ++r)
+    for (int c = 0; c < image::kGlyphWidth; ++c) {
+      const bool is_dot = (image::glyph_row(letter, r) >> (image::kGlyphWidth - 1 - c) & 1U) != 0;
       if (is_white(image, column + c * dot, row + r * dot) != is_dot) return false;
     }
   return true;
@@ -44,8 +44,8 @@ bool reads(const volume::RgbImage& image, int column, int row, char letter, int 
 TEST(SliceLegend, NamesTheDirectionsOfEveryOrientation) {
   constexpr int kDot = 3;  // of a picture of 600 pixels
   constexpr int kMargin = 4 * kDot;
-  constexpr int kMiddle = (600 - volume::kGlyphHeight * kDot) / 2;
-  constexpr int kCentre = (600 - volume::kGlyphWidth * kDot) / 2;
+  constexpr int kMiddle = (600 - image::kGlyphHeight * kDot) / 2;
+  constexpr int kCentre = (600 - image::kGlyphWidth * kDot) / 2;
   const struct {
     SliceOrientation orientation;
     const char* letters;  // left, right, top, bottom
@@ -55,10 +55,9 @@ TEST(SliceLegend, NamesTheDirectionsOfEveryOrientation) {
     const SlicePicture picture = with_legend(orientation);
     ASSERT_EQ(picture.image.columns, 600);
     EXPECT_TRUE(reads(picture.image, kMargin, kMiddle, letters[0], kDot)) << letters;
-    EXPECT_TRUE(reads(picture.image, 600 - kMargin - volume::kGlyphWidth * kDot, kMiddle, letters[1], kDot)) << letters;
+    EXPECT_TRUE(reads(picture.image, 600 - kMargin - image::kGlyphWidth * kDot, kMiddle, letters[1], kDot)) << letters;
     EXPECT_TRUE(reads(picture.image, kCentre, kMargin, letters[2], kDot)) << letters;
-    EXPECT_TRUE(reads(picture.image, kCentre, 600 - kMargin - volume::kGlyphHeight * kDot, letters[3], kDot))
-        << letters;
+    EXPECT_TRUE(reads(picture.image, kCentre, 600 - kMargin - image::kGlyphHeight * kDot, letters[3], kDot)) << letters;
   }
 }
 
@@ -81,7 +80,7 @@ TEST(SliceLegend, ScaleBarHasARoundLength) {
 
 TEST(SliceLegend, LeavesSmallImagesUnchanged) {
   const SlicePicture picture = with_legend(SliceOrientation::kAxial, 64);
-  for (const volume::Rgb& pixel : picture.image.pixels) EXPECT_NE(pixel, (volume::Rgb{255, 255, 255}));
+  for (const image::Rgb& pixel : picture.image.pixels) EXPECT_NE(pixel, (image::Rgb{255, 255, 255}));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ anatomy::VirtualPatient marked_patient() {
 constexpr std::array kOrientations{SliceOrientation::kAxial, SliceOrientation::kCoronal, SliceOrientation::kSagittal};
 
 /// Column and row of the brightest pixel.
-std::array<int, 2> brightest(const volume::RgbImage& image) {
+std::array<int, 2> brightest(const image::RgbImage& image) {
   std::array<int, 2> best{0, 0};
   for (int row = 0; row < image.rows; ++row)
     for (int column = 0; column < image.columns; ++column)
@@ -110,9 +110,9 @@ TEST(SlicePicture, FillsAndOutlinesOnlyStructures) {
   options.label_opacity = 0.5;
   options.size_px = 120;
   const auto picture = make_slice_picture(patient, SliceOrientation::kAxial, Vec3::Zero(), options);
-  EXPECT_EQ(picture.image.at(20, 50), (volume::Rgb{0, 0, 0}));      // Fat on air.
-  EXPECT_EQ(picture.image.at(80, 50), (volume::Rgb{5, 100, 15}));   // Half of the liver's colour on air.
-  EXPECT_EQ(picture.image.at(48, 50), (volume::Rgb{10, 200, 30}));  // Its border.
+  EXPECT_EQ(picture.image.at(20, 50), (image::Rgb{0, 0, 0}));      // Fat on air.
+  EXPECT_EQ(picture.image.at(80, 50), (image::Rgb{5, 100, 15}));   // Half of the liver's colour on air.
+  EXPECT_EQ(picture.image.at(48, 50), (image::Rgb{10, 200, 30}));  // Its border.
 }
 
 }  // namespace

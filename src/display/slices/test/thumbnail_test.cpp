@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "anatomy/build_patient.h"
 #include "slices/slice_geometry.h"
 #include "slices/slice_picture.h"
 #include "slices/test/coarse_abdomen.h"
@@ -11,9 +10,9 @@
 namespace trocar::slices {
 namespace {
 
-constexpr volume::Rgb kPath{255, 214, 10};
+constexpr image::Rgb kPath{255, 214, 10};
 
-std::size_t count(const volume::RgbImage& image, const volume::Rgb& color) {
+std::size_t count(const image::RgbImage& image, const image::Rgb& color) {
   return static_cast<std::size_t>(std::count(image.pixels.begin(), image.pixels.end(), color));
 }
 
@@ -42,10 +41,10 @@ TEST(Thumbnail, ShowsTheLargestLesionOrTheMiddleWithoutAPath) {
 TEST(Thumbnail, DrawsThePathAtTheRequestedSize) {
   const anatomy::VirtualPatient& patient = coarse_abdomen();
   ThumbnailRegion region = find_thumbnail_region(patient);
-  const volume::RgbImage image = make_slice_thumbnail(patient, region);
+  const image::RgbImage image = make_slice_thumbnail(patient, region);
   EXPECT_EQ(image.columns, kThumbnailColumns);
   EXPECT_EQ(image.rows, kThumbnailRows);
-  EXPECT_GT(std::set<volume::Rgb>(image.pixels.begin(), image.pixels.end()).size(), 100u);
+  EXPECT_GT(std::set<image::Rgb>(image.pixels.begin(), image.pixels.end()).size(), 100u);
   EXPECT_GT(count(image, kPath), 20u);
   region.path_P.reset();
   EXPECT_EQ(count(make_slice_thumbnail(patient, region), kPath), 0u);
@@ -53,8 +52,8 @@ TEST(Thumbnail, DrawsThePathAtTheRequestedSize) {
 
 TEST(Thumbnail, InsetCoversOnlyTheLowerRightCorner) {
   const anatomy::VirtualPatient& patient = coarse_abdomen();
-  constexpr volume::Rgb kGround{1, 2, 3};
-  volume::RgbImage image(kThumbnailColumns + 80, kThumbnailRows + 50, kGround);
+  constexpr image::Rgb kGround{1, 2, 3};
+  image::RgbImage image(kThumbnailColumns + 80, kThumbnailRows + 50, kGround);
   add_coronal_inset(patient, find_thumbnail_region(patient), image);
   for (int row = 0; row < image.rows; ++row) {
     for (int column = 0; column < image.columns; ++column) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <type_traits>
 
 #include "core/parallel.h"
@@ -177,7 +176,7 @@ StackGap widest_gap(const SliceStack& stack) {
 double tilt_deg(const SliceStack& stack) {
   const std::size_t last = stack.origins_P.size() - 1;
   const double extent_mm = stack.along_mm(last) - stack.along_mm(0);
-  return std::atan2(sideways_mm(stack, last).norm(), extent_mm) * 180.0 / std::numbers::pi;
+  return degrees(std::atan2(sideways_mm(stack, last).norm(), extent_mm));
 }
 
 bool is_uneven(const SliceStack& stack) {

@@ -10,9 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include "anatomy/build_patient.h"
-#include "anatomy/derive/derive_structures.h"
-#include "anatomy/plausibility/judge_anatomy.h"
 #include "config/toml.h"
 #include "core/files/folders.h"
 #include "core/files/output_file.h"
@@ -23,6 +20,9 @@
 #include "io/dicom/dicom_folder.h"
 #include "io/image/image_file.h"
 #include "io/patient/label_sources.h"
+#include "patient_builder/build_patient.h"
+#include "patient_builder/derive/derive_structures.h"
+#include "patient_builder/plausibility/judge_anatomy.h"
 
 namespace trocar::io {
 namespace {
@@ -58,7 +58,7 @@ Vec3 middle_P(const volume::GridGeometry& g) {
 
 /// Mirrors labels together with their CT: about the middle of the CT, also where their own grid is smaller. Error: a
 /// grid that lies obliquely to the CT's.
-Status mirror_about(const volume::GridGeometry& ct, anatomy::LabelSource& source) {
+Status mirror_about(const volume::GridGeometry& ct, patient_builder::LabelSource& source) {
   volume::GridGeometry& g = source.labels.geometry;
   const Vec3 normal_P = ct.R_PV.col(static_cast<Eigen::Index>(left_right_axis(ct)));
   const Vec3 own_P = g.R_PV.col(static_cast<Eigen::Index>(left_right_axis(g)));
@@ -72,16 +72,16 @@ Status mirror_about(const volume::GridGeometry& ct, anatomy::LabelSource& source
 }
 
 /// What is mirrored is said in the provenance.
-Status mirror(Mirroring mirroring, volume::CtGrid& ct, std::vector<anatomy::LabelSource>& sources,
+Status mirror(Mirroring mirroring, volume::CtGrid& ct, std::vector<patient_builder::LabelSource>& sources,
               std::vector<std::string>& provenance) {
   if (mirroring == Mirroring::kNone) return {};
   if (mirroring == Mirroring::kLabels) {
     provenance.emplace_back("mirrored left to right: labels");
-    for (anatomy::LabelSource& source : sources) mirror_left_right(source.labels);
+    for (patient_builder::LabelSource& source : sources) mirror_left_right(source.labels);
     return {};
   }
   provenance.emplace_back("mirrored left to right: CT and labels");
-  for (anatomy::LabelSource& source : sources) TROCAR_TRY_STATUS(mirror_about(ct.geometry, source));
+  for (patient_builder::LabelSource& source : sources) TROCAR_TRY_STATUS(mirror_about(ct.geometry, source));
   mirror_left_right(ct);
   return {};
 }
@@ -114,7 +114,7 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
   volume::CtGrid& ct = scan.grid;
   std::move(scan.warnings.begin(), scan.warnings.end(), std::back_inserter(warnings));
   if (files.rescale) TROCAR_TRY_STATUS(anatomy::apply_rescale(*files.rescale, ct));
-  if (auto status = anatomy::check_hounsfield(ct, anatomy::air_of(files.confirmed)); !status)
+  if (auto status = anatomy::check_hounsfield(ct, patient_builder::air_of(files.confirmed)); !status)
     return fail(status.error().what, files.ct.string(), status.error().advice);
   TROCAR_TRY_STATUS(check_stop(stop, files));
   report(progress, "reading the labels", 0.2);
@@ -123,9 +123,10 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
   TROCAR_TRY(auto sources, read_label_sources(files.labels, files.label_map, reference, warnings));
   TROCAR_TRY_STATUS(check_stop(stop, files));
 
-  anatomy::BuildOptions options;
+  patient_builder::BuildOptions options;
   options.name = files.name;
   options.confirmed = files.confirmed;
+  options.has_checked_hu = true;
   options.findings = files.findings;
   options.derive = files.derive;
   options.posture = files.posture;
@@ -136,7 +137,8 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
         fmt::format("CT rescaled: HU = {} * stored + {}", files.rescale->slope, files.rescale->intercept));
   for (const std::filesystem::path& path : files.labels) options.provenance.push_back("labels: " + last_name(path));
   TROCAR_TRY_STATUS(mirror(files.mirroring, ct, sources, options.provenance));
-  return anatomy::build_patient(ct, std::move(sources), options, warnings, part_of(progress, 0.4, 1.0));
+  return patient_builder::build_patient(std::move(ct), std::move(sources), options, warnings,
+                                        part_of(progress, 0.4, 1.0));
 }
 
 namespace fs = std::filesystem;
@@ -159,9 +161,9 @@ bool occurs(const anatomy::VirtualPatient& patient, std::uint8_t id) {
 std::vector<anatomy::Label> exported_labels(const anatomy::VirtualPatient& patient) {
   std::vector<anatomy::Label> labels;
   for (anatomy::Label label : patient.label_table.labels) {
-    const bool was_derived = label.is_derived && anatomy::is_derivable(label.name);
+    const bool was_derived = label.is_derived && patient_builder::is_derivable(label.name);
     if ((label.is_derived && !was_derived) || !occurs(patient, label.id)) continue;
-    if (was_derived) label.name = std::string(anatomy::kDerivedMark) + label.name;
+    if (was_derived) label.name = std::string(patient_builder::kDerivedMark) + label.name;
     labels.push_back(std::move(label));
   }
   return labels;
@@ -204,7 +206,8 @@ std::map<std::string, std::string> codes_by_name() {
 
 dicom::WrittenSegment segment_of(const anatomy::Label& label, const std::map<std::string, std::string>& codes) {
   dicom::WrittenSegment segment{label.id, label.name, {}, label.name, {}};
-  const std::size_t mark = label.name.starts_with(anatomy::kDerivedMark) ? anatomy::kDerivedMark.size() : 0;
+  const std::size_t mark =
+      label.name.starts_with(patient_builder::kDerivedMark) ? patient_builder::kDerivedMark.size() : 0;
   const std::string structure = label.name.substr(mark);
   if (const auto whole = codes.find(structure); whole != codes.end()) {
     segment.code = whole->second;  // the code tells the side, too

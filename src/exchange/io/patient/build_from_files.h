@@ -6,19 +6,19 @@
 #include <string>
 #include <vector>
 
-#include "anatomy/build_patient.h"
-#include "anatomy/derive/derive_structures.h"
 #include "anatomy/patient.h"
-#include "anatomy/plausibility/anatomy_finding.h"
 #include "anatomy/tissue/hounsfield.h"
 #include "core/progress.h"
 #include "core/result.h"
+#include "patient_builder/build_patient.h"
+#include "patient_builder/derive/derive_structures.h"
+#include "patient_builder/plausibility/anatomy_finding.h"
 
 namespace trocar::io {
 
 /// What is mirrored left to right, because its file was: labels about the middle of their own grid, or CT and labels
 /// about the middle of the CT.
-using anatomy::Mirroring;
+using patient_builder::Mirroring;
 
 /// The input files of a patient.
 struct PatientFiles {
@@ -28,11 +28,11 @@ struct PatientFiles {
   std::string name;                            ///< Name of the patient.
   std::string series{};                        ///< Selects one of several DICOM series, see read_ct.
   std::optional<anatomy::Rescale> rescale{};   ///< Rescale for a CT whose file lacks it.
-  anatomy::DeriveChoice derive{};              ///< Thin structures to add.
+  patient_builder::DeriveChoice derive{};      ///< Thin structures to add.
   anatomy::Posture posture = anatomy::Posture::kSupine;  ///< For the puncture.
   Mirroring mirroring = Mirroring::kNone;                ///< Kept in the provenance, as the next ones.
-  std::vector<std::string> confirmed{};  ///< Findings that are right (anatomy/plausibility/anatomy_finding.h).
-  std::vector<anatomy::AnatomyFinding>* findings = nullptr;  ///< Receives all findings.
+  std::vector<std::string> confirmed{};  ///< Findings that are right (patient_builder/plausibility/anatomy_finding.h).
+  std::vector<patient_builder::AnatomyFinding>* findings = nullptr;  ///< Receives all findings.
   bool sibling_series = false;  ///< Labels may be drawn on another series of the scan (dicom::CtReference).
 };
 

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 
-#include "anatomy/build_patient.h"
-#include "anatomy/derive/derive_structures.h"
 #include "config/toml.h"
 #include "core/files/folders.h"
 #include "core/text.h"
 #include "io/patient/detail/number_schemes.h"
+#include "patient_builder/build_patient.h"
+#include "patient_builder/derive/derive_structures.h"
 
 namespace trocar::io {
 namespace {
@@ -203,7 +203,7 @@ Result<LabelMap> LabelMap::load(const std::string& label_map) {
   if (!base.empty()) TROCAR_TRY_STATUS(map.read_base(base, file.where()));
   TROCAR_TRY(const std::vector<std::string> ignored, ignored_labels(file));
   for (const std::string& key : ignored)
-    TROCAR_TRY_STATUS(map.read_entry(key, std::string(anatomy::kIgnoredStructure), file.where() + ": ignore"));
+    TROCAR_TRY_STATUS(map.read_entry(key, std::string(patient_builder::kIgnoredStructure), file.where() + ": ignore"));
   if (!file.has("labels") && (!base.empty() || !ignored.empty())) return map;
   TROCAR_TRY(const config::TomlTable table, file.table("labels"));
   for (const std::string& key : table.keys()) {
@@ -213,13 +213,13 @@ Result<LabelMap> LabelMap::load(const std::string& label_map) {
   return map;
 }
 
-std::vector<anatomy::OtherReading> LabelMap::other_readings(
+std::vector<patient_builder::OtherReading> LabelMap::other_readings(
     const std::vector<std::pair<int, std::string>>& given) const {
-  std::vector<anatomy::OtherReading> readings;
+  std::vector<patient_builder::OtherReading> readings;
   if (std::ranges::all_of(given, [&](const auto& entry) { return own_numbers_.contains(entry.first); }))
     return readings;
   for (const detail::NumberScheme& scheme : detail::load_comparable_schemes(structures_)) {
-    anatomy::OtherReading other{scheme.name, scheme.words, {}, {}};
+    patient_builder::OtherReading other{scheme.name, scheme.words, {}, {}};
     if (!file_.empty()) other.advice = fmt::format("write base = \"{}\" in {}", scheme.name, file_);
     for (const auto& [value, name] : given) {
       const auto found = scheme.names.find(value);
@@ -316,7 +316,7 @@ std::string LabelMap::contradiction_in(const DescribedSegment& segment) const {
 std::string LabelMap::name_of(const DescribedSegment& segment) const {
   for (const std::string& key : {segment.name, std::to_string(segment.number)})
     if (const auto found = by_name_.find(key); found != by_name_.end()) return found->second;
-  if (anatomy::is_marked_derived(segment.name)) return segment.name;
+  if (patient_builder::is_marked_derived(segment.name)) return segment.name;
   const bool is_meaning = !segment.codes.empty() && !segment.meanings.empty() &&
                           words_of(segment.name) == words_of(segment.meanings.front());
   if (const auto by_code = is_meaning ? name_of_code(segment.codes.front()) : std::nullopt;

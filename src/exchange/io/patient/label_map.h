@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "anatomy/build_patient.h"
 #include "anatomy/known_structures.h"
 #include "core/result.h"
+#include "patient_builder/build_patient.h"
 
 namespace trocar::io {
 
@@ -42,7 +42,8 @@ class LabelMap {
 
   /// What the values of a file, with the names that they were given, would mean by other schemes that name all of them
   /// and not the same. Entries of the user hold in all. None if the user has named all of them.
-  std::vector<anatomy::OtherReading> other_readings(const std::vector<std::pair<int, std::string>>& given) const;
+  std::vector<patient_builder::OtherReading> other_readings(
+      const std::vector<std::pair<int, std::string>>& given) const;
 
   /// The scheme of the numbers for messages: "TotalSegmentator 2"; empty: none but the user's own.
   const std::string& base_words() const noexcept { return base_words_; }

@@ -25,12 +25,12 @@ namespace {
 
 constexpr std::size_t kFilesAtOnce = 8;  ///< Masks unpacked at a time: limits the memory.
 
-Result<std::vector<anatomy::LabelSource>> read_label_file(const fs::path& path, const LabelMap& map, Place place,
-                                                          std::vector<std::string>& warnings) {
+Result<std::vector<patient_builder::LabelSource>> read_label_file(const fs::path& path, const LabelMap& map,
+                                                                  Place place, std::vector<std::string>& warnings) {
   TROCAR_TRY_STATUS(detail::check_image_path(path));
   TROCAR_TRY(const detail::RawVolume raw, detail::read_volume_file(path));
   warnings.insert(warnings.end(), raw.warnings.begin(), raw.warnings.end());
-  TROCAR_TRY(std::vector<anatomy::LabelSource> sources, detail::read_slicer_segments(raw, map, path, warnings));
+  TROCAR_TRY(std::vector<patient_builder::LabelSource> sources, detail::read_slicer_segments(raw, map, path, warnings));
   if (!sources.empty()) return sources;
   TROCAR_TRY(sources.emplace_back(), detail::name_labels(raw, path, map, place, warnings));
   return sources;
@@ -49,12 +49,13 @@ Result<std::vector<fs::path>> sorted_entries(const fs::path& folder, bool want_f
   return paths;
 }
 
-Result<std::vector<anatomy::LabelSource>> read_mask_files(const std::vector<fs::path>& files, const LabelMap& map,
-                                                          std::vector<std::string>& warnings) {
+Result<std::vector<patient_builder::LabelSource>> read_mask_files(const std::vector<fs::path>& files,
+                                                                  const LabelMap& map,
+                                                                  std::vector<std::string>& warnings) {
   detail::MaskFolder folder;
   for (std::size_t begin = 0; begin < files.size(); begin += kFilesAtOnce) {
     const std::size_t count = std::min(kFilesAtOnce, files.size() - begin);
-    std::vector<Result<std::vector<anatomy::LabelSource>>> read(count);
+    std::vector<Result<std::vector<patient_builder::LabelSource>>> read(count);
     std::vector<std::vector<std::string>> told(count);
     parallel_for(count, 1, [&](std::size_t first, std::size_t last) {
       for (std::size_t n = first; n < last; ++n)
@@ -62,8 +63,8 @@ Result<std::vector<anatomy::LabelSource>> read_mask_files(const std::vector<fs::
     });
     for (const auto& of_file : told) warnings.insert(warnings.end(), of_file.begin(), of_file.end());
     for (auto& result : read) {
-      TROCAR_TRY(std::vector<anatomy::LabelSource> sources, std::move(result));
-      for (anatomy::LabelSource& source : sources) folder.add(std::move(source));
+      TROCAR_TRY(std::vector<patient_builder::LabelSource> sources, std::move(result));
+      for (patient_builder::LabelSource& source : sources) folder.add(std::move(source));
     }
   }
   return folder.take();
@@ -94,11 +95,11 @@ Result<detail::DicomVolume<std::uint8_t>> read_mask_volume(const fs::path& folde
   return read(PixelNumbers::kRescaled);
 }
 
-Result<anatomy::LabelSource> read_dicom_mask(const fs::path& folder, const LabelMap& map,
-                                             const dicom::CtReference& ct) {
+Result<patient_builder::LabelSource> read_dicom_mask(const fs::path& folder, const LabelMap& map,
+                                                     const dicom::CtReference& ct) {
   TROCAR_TRY(auto mask, read_mask_volume(folder));
   TROCAR_TRY_STATUS(check_mask_origin(mask, ct, folder));
-  return anatomy::LabelSource{
+  return patient_builder::LabelSource{
       folder.string(), std::move(mask.grid), {{1, map.name_of(folder.filename().string())}}, false, {}};
 }
 
@@ -164,9 +165,9 @@ std::vector<fs::path> beside_objects(const fs::path& folder) {
   return left_out;
 }
 
-Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map,
-                                                            const dicom::CtReference& ct,
-                                                            std::vector<std::string>& warnings) {
+Result<std::vector<patient_builder::LabelSource>> read_label_folder(const fs::path& folder, const LabelMap& map,
+                                                                    const dicom::CtReference& ct,
+                                                                    std::vector<std::string>& warnings) {
   TROCAR_TRY(std::vector<fs::path> files, sorted_entries(folder, false));
   std::erase_if(files, [](const fs::path& file) { return !detail::find_image_format(file); });
   if (!files.empty()) {
@@ -178,7 +179,7 @@ Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& fold
   // A path with a trailing slash has no file name.
   const fs::path self = fs::absolute(folder / ".").lexically_normal().parent_path();
   if (detail::has_dicom_images(self)) {
-    TROCAR_TRY(anatomy::LabelSource mask, read_dicom_mask(self, map, ct));
+    TROCAR_TRY(patient_builder::LabelSource mask, read_dicom_mask(self, map, ct));
     masks.add(std::move(mask));
     return masks.take();
   }
@@ -186,7 +187,7 @@ Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& fold
   TROCAR_TRY(const std::vector<fs::path> folders, sorted_entries(folder, true));
   for (const fs::path& series : folders) {
     if (!detail::has_dicom_images(series)) continue;
-    TROCAR_TRY(anatomy::LabelSource mask, read_dicom_mask(series, map, ct));
+    TROCAR_TRY(patient_builder::LabelSource mask, read_dicom_mask(series, map, ct));
     masks.add(std::move(mask));
     any = true;
   }
@@ -196,8 +197,9 @@ Result<std::vector<anatomy::LabelSource>> read_label_folder(const fs::path& fold
               "DICOM SEG or RTSTRUCT files");
 }
 
-Result<std::vector<anatomy::LabelSource>> read_path(const fs::path& path, const LabelMap& map,
-                                                    const dicom::CtReference& ct, std::vector<std::string>& warnings) {
+Result<std::vector<patient_builder::LabelSource>> read_path(const fs::path& path, const LabelMap& map,
+                                                            const dicom::CtReference& ct,
+                                                            std::vector<std::string>& warnings) {
   std::error_code error;
   const bool is_folder = fs::is_directory(path, error);
   TROCAR_TRY(const std::vector<fs::path> objects, detail::find_dicom_labels(path));
@@ -205,9 +207,9 @@ Result<std::vector<anatomy::LabelSource>> read_path(const fs::path& path, const 
     return is_folder ? read_label_folder(path, map, ct, warnings)
                      : read_label_file(path, map, Place::kNamedByUser, warnings);
   if (is_folder) tell_left_out(path, beside_objects(path), warnings);
-  std::vector<anatomy::LabelSource> all;
+  std::vector<patient_builder::LabelSource> all;
   for (const fs::path& object : objects) {
-    TROCAR_TRY(std::vector<anatomy::LabelSource> sources, detail::read_dicom_labels(object, map, ct, warnings));
+    TROCAR_TRY(std::vector<patient_builder::LabelSource> sources, detail::read_dicom_labels(object, map, ct, warnings));
     std::move(sources.begin(), sources.end(), std::back_inserter(all));
   }
   return all;
@@ -215,13 +217,14 @@ Result<std::vector<anatomy::LabelSource>> read_path(const fs::path& path, const 
 
 }  // namespace
 
-Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<fs::path>& paths,
-                                                             const std::string& label_map, const dicom::CtReference& ct,
-                                                             std::vector<std::string>& warnings) {
+Result<std::vector<patient_builder::LabelSource>> read_label_sources(const std::vector<fs::path>& paths,
+                                                                     const std::string& label_map,
+                                                                     const dicom::CtReference& ct,
+                                                                     std::vector<std::string>& warnings) {
   TROCAR_TRY(const LabelMap map, LabelMap::load(label_map));
-  std::vector<anatomy::LabelSource> all;
+  std::vector<patient_builder::LabelSource> all;
   for (const fs::path& path : paths) {
-    TROCAR_TRY(std::vector<anatomy::LabelSource> sources, read_path(path, map, ct, warnings));
+    TROCAR_TRY(std::vector<patient_builder::LabelSource> sources, read_path(path, map, ct, warnings));
     std::move(sources.begin(), sources.end(), std::back_inserter(all));
   }
   if (all.empty() && !paths.empty())
@@ -232,8 +235,8 @@ Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<f
   return all;
 }
 
-Result<std::vector<anatomy::LabelSource>> read_label_sources(const std::vector<fs::path>& paths,
-                                                             const std::string& label_map) {
+Result<std::vector<patient_builder::LabelSource>> read_label_sources(const std::vector<fs::path>& paths,
+                                                                     const std::string& label_map) {
   std::vector<std::string> warnings;
   return read_label_sources(paths, label_map, {}, warnings);
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <span>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
 #include "core/files/input_file.h"
 #include "core/files/unfinished_output.h"
@@ -13,6 +12,7 @@
 #include "core/random.h"
 #include "io/patient/detail/maker_version.h"
 #include "io/patient/patient_folder.h"
+#include "phantom/phantom.h"
 #include "surface/extract_surface.h"
 
 namespace trocar::io {
@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 std::string maker_hash() {
   ContentHash hash;
   hash.add(std::as_bytes(std::span(detail::maker_version())));
-  for (const fs::path& file : anatomy::phantom_data_files())
+  for (const fs::path& file : phantom::phantom_data_files())
     if (const auto text = read_input(file, FileKind::kToml)) hash.add(std::as_bytes(std::span(*text)));
   return hash.digest();
 }

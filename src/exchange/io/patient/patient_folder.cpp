@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
 #include "core/files/input_file.h"
 #include "core/log.h"
@@ -15,6 +14,7 @@
 #include "io/markups_file.h"
 #include "io/patient/detail/patient_toml.h"
 #include "motion/motion_file.h"
+#include "phantom/phantom.h"
 
 namespace trocar::io {
 namespace fs = std::filesystem;
@@ -148,7 +148,7 @@ Result<std::string> find_recorded_patient(const std::string& recorded, const std
 Result<anatomy::VirtualPatient> load_source(const PatientSource& source, const Progress& progress) {
   if (is_path(source.folder_or_name)) return load_patient(source.folder_or_name);
   TROCAR_TRY(anatomy::VirtualPatient patient,
-             anatomy::generate_phantom(source.folder_or_name, source.seed, {}, progress));
+             phantom::generate_phantom(source.folder_or_name, source.seed, {}, progress));
   round_as_saved(patient);
   return patient;
 }

@@ -22,7 +22,7 @@ struct PatientExtra {
   std::string text;  ///< Its bytes.
 };
 
-/// A recorded ultrasound to write with a patient (patient_panorama.h).
+/// A recorded ultrasound to write with a patient.
 struct RecordedUltrasound {
   const volume::LabelGrid& gray_U;
   const ImageFields& fields;
@@ -84,7 +84,7 @@ bool is_path(const std::string& folder_or_name);
 
 /// Loads the patient of a source: reads its folder or generates it. A folder has precedence over an embedded patient of
 /// the same name. For any other name, the error lists the embedded patients (exit status 2). Ignores the cache: for
-/// programs that only read (others use open_patient.h).
+/// programs that only read (others use open_patient).
 Result<anatomy::VirtualPatient> load_source(const PatientSource& source, const Progress& progress = {});
 
 }  // namespace trocar::io

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -124,12 +123,11 @@ Status take_fan(const XmlElement& element, ultrasound::FreehandOptions& options)
   TROCAR_TRY(const auto angles_deg, numbers_of<2>(element, "FanAnglesDeg"));
   TROCAR_TRY(const auto origin_px, numbers_of<2>(element, "FanOriginPixel"));
   if (!angles_deg || !origin_px || (*angles_deg)[0] == (*angles_deg)[1]) return {};  // PLUS: 0 0 means no fan
-  constexpr double kRadPerDegree = std::numbers::pi / 180.0;
   ultrasound::ClipFan fan;
   fan.origin_column = (*origin_px)[0];
   fan.origin_row = (*origin_px)[1];
-  fan.first_angle_rad = (*angles_deg)[0] * kRadPerDegree;
-  fan.last_angle_rad = (*angles_deg)[1] * kRadPerDegree;
+  fan.first_angle_rad = (*angles_deg)[0] * kRadPerDeg;
+  fan.last_angle_rad = (*angles_deg)[1] * kRadPerDeg;
   TROCAR_TRY_STATUS(take_number(element, "FanRadiusStartPixel", fan.first_radius_px));
   TROCAR_TRY_STATUS(take_number(element, "FanRadiusStopPixel", fan.last_radius_px));
   options.fan = fan;

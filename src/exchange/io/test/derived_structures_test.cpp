@@ -6,12 +6,13 @@
 #include <filesystem>
 #include <map>
 
-#include "anatomy/build_patient.h"
-#include "anatomy/plausibility/judge_anatomy.h"
+#include "anatomy/label_statistics.h"
 #include "core/files/folders.h"
 #include "core/files/output_file.h"
 #include "core/testing/test_data.h"
 #include "io/patient/build_from_files.h"
+#include "patient_builder/build_patient.h"
+#include "patient_builder/plausibility/judge_anatomy.h"
 
 namespace trocar::io {
 namespace {
@@ -181,15 +182,16 @@ TEST_F(TorsoWithDerivedStructures, DetectsAnOrganMovedBy15Mm) {
         from[0] -= voxels;
         if (g.contains(from) && patient_.labels[from] == id) moved.labels.voxels[n] = id;
       }
-      const auto findings = anatomy::judge_anatomy(moved);
+      const auto findings = patient_builder::judge_anatomy(moved);
       EXPECT_TRUE(std::ranges::any_of(findings,
-                                      [&](const anatomy::AnatomyFinding& finding) {
-                                        return finding.name == anatomy::kShifted &&
+                                      [&](const patient_builder::AnatomyFinding& finding) {
+                                        return finding.name == patient_builder::kShifted &&
                                                finding.text.find(name) != std::string::npos;
                                       }))
           << name << voxels;
     }
-  for (const anatomy::AnatomyFinding& finding : anatomy::judge_anatomy(patient_)) ADD_FAILURE() << finding.text;
+  for (const patient_builder::AnatomyFinding& finding : patient_builder::judge_anatomy(patient_))
+    ADD_FAILURE() << finding.text;
 }
 
 TEST_F(TorsoWithDerivedStructures, ListsItsRepairs) {

@@ -200,7 +200,7 @@ TEST(KnownStructures, LoadMatchesTheFiles) {
   ASSERT_TRUE(few) << few.error().text();
   ASSERT_NE(few->find("Rib_left_7"), nullptr);
   EXPECT_EQ(few->find("rib")->tissue, "bone");
-  EXPECT_EQ(few->find("rib")->color, (volume::Rgb{232, 220, 190}));
+  EXPECT_EQ(few->find("rib")->color, (image::Rgb{232, 220, 190}));
   EXPECT_EQ(few->find("rib")->priority, 50);
   EXPECT_EQ(few->find("liver"), nullptr);
   EXPECT_TRUE(few->is_background("Air"));

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "anatomy/build_patient.h"
+#include "anatomy/label_statistics.h"
 #include "core/result.h"
 #include "volume/grid.h"
 

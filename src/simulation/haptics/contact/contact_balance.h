@@ -64,7 +64,7 @@ struct ContactBalance {
   std::array<PressedPoint, kMaxContactPoints> points{};
   Vec3 offset_P = Vec3::Zero();  ///< Vector from the origin of the device's tool to the tool's origin.
   Vec3 tilt_P = Vec3::Zero();    ///< Rotation vector of the tool against the device (rad).
-  CouplingParams coupling;
+  stylus::CouplingParams coupling;
   double lever_mm = 1.0;
   double friction_mu = 0.0;
   double engagement = 1.0;  ///< 0..1: share of the tissue's forces.

@@ -16,7 +16,7 @@ class AxialBalance {
   double s_device_mm = 0.0;
   double v_device_mm_per_s = 0.0;
   double dt_s = 0.001;
-  CouplingParams coupling;
+  stylus::CouplingParams coupling;
   LoadingLaw loading;
   double surface_mm = std::numeric_limits<double>::infinity();  ///< Resting surface of the layer ahead.
   double viscous_ns_per_mm = 0.0;                               ///< Sum of nu_i A_i over the inserted shaft.

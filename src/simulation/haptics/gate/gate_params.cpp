@@ -97,27 +97,21 @@ GateParams made_safe(const GateParams& params) noexcept {
 }  // namespace detail
 namespace {
 
-// Known ratios: 6.2/37.5 N and 0.88/3.3 N, 188/515 N mm (data/devices.toml, premium and omni).
-constexpr double kContinuousForceShare = 0.2;   // [assumed, 0.15..0.5]
-constexpr double kContinuousTorqueShare = 0.3;  // [assumed, 0.15..0.5]
 constexpr double kLooseHand_ns_per_mm = 0.003;  // a quarter of the hand of H1 [assumed, 0.001..0.012]
 constexpr double kNeverVibrating_mw = 1e6;      // end of the gate's range
 constexpr double kSoftestScale = 0.1;           // a smaller value would disable the energy account [assumed]
 
 }  // namespace
 
-GateParams gate_params(const DevicePreset& preset) noexcept {
-  const DeviceCapability& device = preset.capability;
+GateParams gate_params(const stylus::DevicePreset& preset) noexcept {
+  const stylus::DeviceCapability& device = preset.capability;
   GateParams params;
   params.peak_force_n = device.peak_force_n;
   params.peak_torque_nmm = device.peak_torque_nmm;
-  params.continuous_force_n =
-      std::min(device.peak_force_n, preset.continuous_force_n.value_or(kContinuousForceShare * device.peak_force_n));
-  params.continuous_torque_nmm = std::min(
-      device.peak_torque_nmm, preset.continuous_torque_nmm.value_or(kContinuousTorqueShare * device.peak_torque_nmm));
+  params.continuous_force_n = stylus::continuous_force_n(preset);
+  params.continuous_torque_nmm = stylus::continuous_torque_nmm(preset);
   params.peak_roll_nmm = device.peak_roll_nmm;
-  params.continuous_roll_nmm = std::min(
-      device.peak_roll_nmm, preset.continuous_roll_nmm.value_or(kContinuousTorqueShare * device.peak_roll_nmm));
+  params.continuous_roll_nmm = stylus::continuous_roll_nmm(preset);
   params.max_damping_ns_per_mm = preset.max_damping_ns_per_mm;
   params.brake_ns_per_mm = std::min(params.brake_ns_per_mm, params.max_damping_ns_per_mm);
   // Stiffness of the patient's springs at the device; never stiffer, which would limit more.
@@ -138,7 +132,7 @@ constexpr double kLeastLate = 1.5;       // periods; a smaller delay is rounding
 
 }  // namespace
 
-double permitted_share(const CouplingParams& coupling, double period_s, const GateParams& params) noexcept {
+double permitted_share(const stylus::CouplingParams& coupling, double period_s, const GateParams& params) noexcept {
   if (!(coupling.stiffness_n_per_mm > 0.0)) return 1.0;
   const double made_ns_per_mm =
       kDelayPeriods * coupling.stiffness_n_per_mm * period_s - std::max(0.0, coupling.damping_ns_per_mm);
@@ -146,7 +140,7 @@ double permitted_share(const CouplingParams& coupling, double period_s, const Ga
   return params.physical_damping_ns_per_mm / made_ns_per_mm;
 }
 
-double longest_period_s(const CouplingParams& coupling, const GateParams& params) noexcept {
+double longest_period_s(const stylus::CouplingParams& coupling, const GateParams& params) noexcept {
   double longest_s = kLongestFull_s;
   if (coupling.stiffness_n_per_mm > 0.0) {
     const double covered_ns_per_mm = params.physical_damping_ns_per_mm + std::max(0.0, coupling.damping_ns_per_mm);

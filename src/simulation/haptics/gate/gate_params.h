@@ -1,14 +1,13 @@
 #pragma once
 
-#include "haptics/coupling/device_preset.h"
 #include "haptics/gate/safety_gate.h"
+#include "stylus/device_preset.h"
 
 namespace trocar::haptics {
 
-/// Gate parameters of a device: its peaks, its continuous force and torque (if unknown, a fifth and three tenths of the
-/// peaks [assumed]) and its maximum damping; defaults of GateParams otherwise. The result passes check() for every
-/// preset that load_device_presets() accepts.
-GateParams gate_params(const DevicePreset& preset) noexcept;
+/// Gate parameters of a device: its peaks, its continuous force and torque, and its maximum damping; defaults of
+/// GateParams otherwise. The result passes check() for every preset that load_device_presets() accepts.
+GateParams gate_params(const stylus::DevicePreset& preset) noexcept;
 
 }  // namespace trocar::haptics
 
@@ -16,8 +15,8 @@ GateParams gate_params(const DevicePreset& preset) noexcept;
 namespace trocar::haptics {
 
 /// Longest period (s) that permits the full coupling.
-double longest_period_s(const CouplingParams& coupling, const GateParams& params) noexcept;
+double longest_period_s(const stylus::CouplingParams& coupling, const GateParams& params) noexcept;
 /// Share (0..1) of a coupling's force that a loop period of `period_s` permits.
-double permitted_share(const CouplingParams& coupling, double period_s, const GateParams& params) noexcept;
+double permitted_share(const stylus::CouplingParams& coupling, double period_s, const GateParams& params) noexcept;
 
 }  // namespace trocar::haptics

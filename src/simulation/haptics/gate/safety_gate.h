@@ -79,11 +79,11 @@ struct GateInput {
   Vec3 v_mm_per_s = Vec3::Zero();   ///< Mean velocity of the stylus since the last period (its displacement over dt).
   Vec3 w_rad_per_s = Vec3::Zero();  ///< Mean angular velocity, likewise.
   double dt_s = 0.001;
-  double silence_s = 0.0;   ///< Time since the last client message.
-  double unread_s = 0.0;    ///< The device's silence; the caller leaves out the time in which its own loop did not run.
-  double busy_s = 0.0;      ///< Part of dt_s that reading, tick and writing of the last period took.
-  CouplingParams coupling;  ///< Coupling in device units; stiffness 0: no check.
-  bool is_wanted = false;   ///< Forces are requested.
+  double silence_s = 0.0;  ///< Time since the last client message.
+  double unread_s = 0.0;   ///< The device's silence; the caller leaves out the time in which its own loop did not run.
+  double busy_s = 0.0;     ///< Part of dt_s that reading, tick and writing of the last period took.
+  stylus::CouplingParams coupling;  ///< Coupling in device units; stiffness 0: no check.
+  bool is_wanted = false;           ///< Forces are requested.
   telemetry::GateFault device_fault = telemetry::GateFault::kNone;  ///< Fault detected by the caller (kDeviceLost,
                                                                     ///< kEncoderStuck, kLoopStalled, kRequested).
   bool is_reset = false;  ///< Explicit reset of a fault; has no effect while its cause persists.

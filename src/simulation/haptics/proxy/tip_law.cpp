@@ -86,7 +86,7 @@ double threshold_along_n(const TipLaw& tip, const Vec3& u) noexcept {
 }
 
 NeedleBalance balance_needle(const NeedleDrive& drive, double tissue_n_per_mm, double proxy_mm) noexcept {
-  const CouplingParams& coupling = drive.coupling;
+  const stylus::CouplingParams& coupling = drive.coupling;
   const double push_n = coupling.stiffness_n_per_mm * (drive.ahead_mm - drive.before_mm) -
                         tissue_n_per_mm * (drive.before_mm - proxy_mm) - drive.bed_n;
   const double slip_n = push_n - std::clamp(push_n, -drive.friction.dry_n, drive.friction.dry_n);

@@ -35,7 +35,7 @@ struct AxialFriction {
 /// friction of its shaft; and the tissue, which bears its tip (spring K to the proxy). Massless; all in mm along the
 /// path.
 struct NeedleDrive {
-  CouplingParams coupling;
+  stylus::CouplingParams coupling;
   AxialFriction friction;
   double ahead_mm = 0.0;   ///< Position of the device a damping time ahead.
   double before_mm = 0.0;  ///< Position of the needle at the last tick.

@@ -1,8 +1,6 @@
 // The law of the needle's size against its sources: docs/physics.md P7.
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "haptics/needle_geometry.h"
 #include "haptics/test/layered_patient.h"
 
@@ -14,7 +12,7 @@ const anatomy::NeedleSizeLaw kLaw{1.27, 20.0, 61.0, 18.0, 0.255};
 haptics::NeedleGeometry needle(double diameter_mm, double bevel_deg = 20.0) {
   haptics::NeedleGeometry geometry;
   geometry.radius_mm = 0.5 * diameter_mm;
-  geometry.bevel_rad = bevel_deg * std::numbers::pi / 180.0;
+  geometry.bevel_rad = radians(bevel_deg);
   return geometry;
 }
 

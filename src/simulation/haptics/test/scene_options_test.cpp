@@ -15,7 +15,7 @@ TEST(SceneOptions, RoundTrip) {
   scene.device.peak_force_n = 7.9;
   scene.device.stylus_lever_mm = -12.5;
   HapticOptions options;
-  DeviceCapability device;
+  stylus::DeviceCapability device;
   const auto texts = option_texts(scene);
   const Status status = restore_options(texts, options, device);
   ASSERT_TRUE(status) << status.error().text();
@@ -33,7 +33,7 @@ TEST(SceneOptions, RefuseUnknownKeysAndBadValues) {
   for (const char* bad : {"coupling.stiffness", "coupling.stiffness=", "coupling.stiffness=nan", "bending=yes",
                           "device.peak_force=1e999", "colour=1", "force_model=magic", ""}) {
     HapticOptions options;
-    DeviceCapability device;
+    stylus::DeviceCapability device;
     const std::vector<std::string> texts{bad};
     const Status status = restore_options(texts, options, device);
     ASSERT_FALSE(status) << bad;
@@ -54,7 +54,7 @@ TEST(HapticScene, UsesThePathConstraintOfAFittedTable) {
   EXPECT_EQ((*fitted)->options.constraint.torque_nmm, 40.0);
   // No more than the device renders: 1 N/mm over d_0 = 3 mm, and no torque without motors for it.
   tissues.path_constraint = {true, 20.0, 40.0};
-  DeviceCapability weak;
+  stylus::DeviceCapability weak;
   weak.max_stiffness_n_per_mm = 1.0;
   weak.peak_torque_nmm = 0.0;
   const auto limited = make_haptic_scene(patient, tissues, {}, weak, {});

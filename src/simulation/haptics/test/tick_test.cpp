@@ -8,9 +8,9 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.inc.h"
-#include "haptics/coupling/virtual_stylus.h"
 #include "haptics/test/layered_patient.h"
 #include "haptics/test/tick_period.h"
+#include "stylus/virtual_stylus.h"
 
 namespace trocar::testing {
 namespace {
@@ -72,7 +72,7 @@ TEST(Tick, ComposesTheTotalFromAllItsParts) {
 /// Nothing touches a needle in the air: the stylus' weight is all there is, also on a device without torque.
 TEST(Tick, SeparatesWeightFromTissueForce) {
   for (const double peak_torque_nmm : {515.0, 0.0}) {
-    haptics::DeviceCapability device;
+    stylus::DeviceCapability device;
     device.peak_torque_nmm = peak_torque_nmm;
     const auto scene = haptics::make_haptic_scene(layered_patient(liver_way()), paper_tissues(), {}, device, {});
     ASSERT_TRUE(scene) << scene.error().text();
@@ -109,7 +109,7 @@ TEST(Tick, TouchesTheSkinAfterStoppingOnIt) {
 TEST(Tick, SendsTheCouplingForceToTheDevice) {
   // physics.md V1: along the path the device is pushed back by k_c (s_D - s) + b_c (v_D - v), which balances all
   // resistances. Here from the recorded places alone, without the recorded terms.
-  const haptics::CouplingParams coupling;
+  const stylus::CouplingParams coupling;
   Driver driver(make_scene(liver_way()));
   const std::vector<telemetry::TickSample> samples = driver.move(50.0, 10.0);
   int checked = 0;
@@ -257,14 +257,14 @@ TEST_P(ClosedLoop, ComesToRestInEveryTissue) {
   for (const double depth : {0.0, 1.0, 8.0, 11.9, 13.0, 23.9, 24.5, 50.0}) {
     const auto scene = make_scene(liver_way());
     haptics::HapticState state;
-    haptics::VirtualDeviceState device{needle_pose({0, 0, -5}, Vec3::UnitZ()), Vec3::Zero()};
-    haptics::HandHold hand{Vec3::Zero(), Vec3::Zero(), 0.5, 0.005, 0.05};
+    stylus::VirtualDeviceState device{needle_pose({0, 0, -5}, Vec3::UnitZ()), Vec3::Zero()};
+    stylus::HandHold hand{Vec3::Zero(), Vec3::Zero(), 0.5, 0.005, 0.05};
     Vec3 force_P = Vec3::Zero();
     double low = 1e9;
     double high = -1e9;
     for (int i = 0; i < 6000; ++i) {
       hand.anchor_P.z() = -5.0 + (depth + 5.0) * std::min(1.0, i / 2000.0);
-      haptics::step_device(device, {GetParam(), 0.5}, hand, force_P, scene->gravity_P, 0.001);
+      stylus::step_device(device, {GetParam(), 0.5}, hand, force_P, scene->gravity_P, 0.001);
       const Vec3 tip = (device.X_PN.p() / kCount_mm).array().round() * kCount_mm;
       force_P = haptics::tick(state, {0.001 * i, 0.001, telemetry::to_tool_pose({device.X_PN.R(), tip})}, *scene)
                     .total_W.force_n;
@@ -282,7 +282,7 @@ TEST(Tick, LimitsTheTorqueAboutTheStylusToItsOwnPeak) {
   haptics::HapticOptions options;
   options.tool = haptics::Tool::kTransducer;
   options.has_weight_compensation = false;
-  haptics::DeviceCapability device;
+  stylus::DeviceCapability device;
   for (const double most_nmm : {0.0, 0.5}) {
     device.peak_roll_nmm = most_nmm;
     const auto scene = haptics::make_haptic_scene(layered_patient({{0, kFat}}), paper_tissues(), {}, device, options);

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "image/image.h"
 #include "registration/ct_ultrasound/detail/working_images.h"
 #include "registration/intensity/gray_levels.h"
-#include "volume/image.h"
 #include "volume/sampling.h"
 
 namespace trocar::registration {
@@ -90,12 +90,12 @@ class Painter {
   double bright_;
 };
 
-volume::Rgb gray_of(double value) {
+image::Rgb gray_of(double value) {
   const auto v = static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0));
   return {v, v, v};
 }
 
-volume::Rgb blend_of(const Pixel& pixel) {
+image::Rgb blend_of(const Pixel& pixel) {
   if (pixel.us < 0.0) return gray_of(0.6 * pixel.ct);
   const double ct = 0.55 * pixel.ct;
   const auto channel = [&](double weight) {
@@ -106,15 +106,15 @@ volume::Rgb blend_of(const Pixel& pixel) {
 
 }  // namespace
 
-Result<volume::RgbImage> overlay_picture(const volume::CtGrid& ct, const volume::LabelGrid& us, const Beams& beams,
-                                         const Pose& X_CU) {
+Result<image::RgbImage> overlay_picture(const volume::CtGrid& ct, const volume::LabelGrid& us, const Beams& beams,
+                                        const Pose& X_CU) {
   TROCAR_TRY(const detail::WorkingUltrasound prepared, detail::prepare_ultrasound(us, beams));
   const std::array<Plane, 2> planes = planes_of(us.geometry, beams, prepared.centre);
   const double width_mm = 2.0 * std::max(planes[0].half_width_mm, planes[1].half_width_mm);
   const double height_mm = planes[0].down_mm - planes[0].up_mm;
   const double pixel_mm = std::max(kPixel_mm, std::max(width_mm, height_mm) / kMost);
   const int columns = static_cast<int>(width_mm / pixel_mm) + 1, rows = static_cast<int>(height_mm / pixel_mm) + 1;
-  volume::RgbImage image(4 * columns + 3 * kGap, 2 * rows + kGap + kTitle, {12, 12, 12});
+  image::RgbImage image(4 * columns + 3 * kGap, 2 * rows + kGap + kTitle, {12, 12, 12});
   const Painter painter(ct, us, prepared.inside, X_CU);
   for (std::size_t p = 0; p < planes.size(); ++p) {
     const Plane& plane = planes[p];
@@ -127,7 +127,7 @@ Result<volume::RgbImage> overlay_picture(const volume::CtGrid& ct, const volume:
           const Pixel pixel = painter.pixel(plane.centre + right_mm * plane.right + down_mm * plane.down);
           const bool is_us = (std::lround(std::floor(right_mm / kField_mm) + std::floor(down_mm / kField_mm)) & 1) == 0;
           const double us_gray = std::max(0.0, pixel.us);
-          const auto put = [&](int panel, const volume::Rgb& colour) {
+          const auto put = [&](int panel, const image::Rgb& colour) {
             image.at(panel * (columns + kGap) + column, top + row) = colour;
           };
           put(0, gray_of(us_gray));
@@ -139,7 +139,7 @@ Result<volume::RgbImage> overlay_picture(const volume::CtGrid& ct, const volume:
   }
   const std::array<const char*, 4> titles = {"ULTRASOUND", "CT", "CHECKERBOARD 20 MM", "BLEND"};
   for (int n = 0; n < 4; ++n)
-    volume::draw_text(image, n * (columns + kGap) + 4, 4, titles[static_cast<std::size_t>(n)], {230, 230, 230});
+    image::draw_text(image, n * (columns + kGap) + 4, 4, titles[static_cast<std::size_t>(n)], {230, 230, 230});
   return image;
 }
 

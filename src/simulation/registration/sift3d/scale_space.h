@@ -31,8 +31,8 @@ struct ScaleSpace {
   double sigma_mm(std::size_t octave, double level) const noexcept;
 };
 
-/// Of flattened gray levels (intensity/flatten.h); `usable` lies on the same grid (checked). The blur is isotropic in
-/// mm for any voxel size. Errors (exit status 2): options out of range.
+/// Of flattened gray levels (intensity/gray_levels.h); `usable` lies on the same grid (checked). The blur is isotropic
+/// in mm for any voxel size. Errors (exit status 2): options out of range.
 Result<ScaleSpace> build_scale_space(const volume::FloatGrid& flat, const volume::MaskGrid& usable,
                                      const ScaleSpaceOptions& options = {});
 

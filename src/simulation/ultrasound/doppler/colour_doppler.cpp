@@ -277,7 +277,7 @@ const DopplerFrame& ColourDoppler::render(const DopplerInput& input) noexcept {
   return impl.frame;
 }
 
-const volume::RgbImage& ColourDoppler::overlay(const GrayImage& image, const RasterGeometry& raster) noexcept {
+const image::RgbImage& ColourDoppler::overlay(const image::GrayImage& image, const RasterGeometry& raster) noexcept {
   Impl& impl = *impl_;
   return impl.conversion.convert(image, raster, impl.scan, impl.frame, impl.held);
 }

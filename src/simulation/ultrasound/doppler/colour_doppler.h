@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "geometry/pose.h"
+#include "image/image.h"
 #include "ultrasound/doppler/doppler_settings.h"
 #include "ultrasound/doppler/vessel_flow.h"
 #include "ultrasound/engine/beam.h"
 #include "ultrasound/probe/scan_geometry.h"
 #include "ultrasound/scanner/scanner.h"
-#include "volume/image.h"
 
 namespace trocar::ultrasound {
 
@@ -66,7 +66,7 @@ class ColourDoppler {
   /// Valid until the next call.
   const DopplerFrame& render(const DopplerInput& input) noexcept;
   /// The last frame's colours over the picture of the same scan, with the box's outline. Valid until the next call.
-  const volume::RgbImage& overlay(const GrayImage& image, const RasterGeometry& raster) noexcept;
+  const image::RgbImage& overlay(const image::GrayImage& image, const RasterGeometry& raster) noexcept;
   /// Clears persistence.
   void reset() noexcept;
 
@@ -77,9 +77,9 @@ class ColourDoppler {
 
 /// Colour of a velocity as a fraction of the scale (-1..1), after inversion and shift of the baseline. Towards the
 /// transducer: red, orange, yellow. Away from it: blue to cyan. Dark near the baseline. Real-time safe.
-volume::Rgb doppler_colour(double share, const DopplerSettings& settings) noexcept;
+image::Rgb doppler_colour(double share, const DopplerSettings& settings) noexcept;
 /// Draws the colour bar with +-scale (cm/s) at its ends; its top left at (column, row).
-void draw_colour_bar(volume::RgbImage& image, int column, int row, int columns, int rows, double scale_cm_per_s,
+void draw_colour_bar(image::RgbImage& image, int column, int row, int columns, int rows, double scale_cm_per_s,
                      const DopplerSettings& settings);
 
 }  // namespace trocar::ultrasound

@@ -5,6 +5,7 @@
 
 #include "core/result.h"
 #include "ultrasound/probe/probe_contact.h"
+#include "volume/sampling.h"
 
 namespace trocar::ultrasound {
 namespace {
@@ -16,10 +17,8 @@ struct WeightedNeighbours {
 };
 
 WeightedNeighbours weighted_neighbours(double place, int count) noexcept {
-  const double held = std::clamp(place, 0.0, static_cast<double>(count - 1));
-  const auto low = static_cast<std::size_t>(held);
-  return {low, std::min(low + 1, static_cast<std::size_t>(count - 1)),
-          static_cast<unsigned>(256.0 * (held - static_cast<double>(low)))};
+  const volume::Neighbours n = volume::neighbours(place, count);
+  return {static_cast<std::size_t>(n.low), static_cast<std::size_t>(n.high), static_cast<unsigned>(256.0 * n.share)};
 }
 
 }  // namespace

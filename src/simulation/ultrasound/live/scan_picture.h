@@ -7,6 +7,7 @@
 
 #include "core/live/live_schedule.h"
 #include "geometry/pose.h"
+#include "image/image.h"
 #include "motion/patient_motion.h"
 #include "ultrasound/doppler/doppler_settings.h"
 #include "ultrasound/doppler/vessel_flow.h"
@@ -15,7 +16,6 @@
 #include "ultrasound/probe/transducer.h"
 #include "ultrasound/scanner/display_settings.h"
 #include "ultrasound/scanner/scanner.h"
-#include "volume/image.h"
 
 namespace trocar::ultrasound {
 
@@ -98,8 +98,8 @@ using ScanSchedule = LiveSchedule<ScanLevels>;
 /// Immutable once it is shared.
 struct ScanPicture {
   std::uint64_t number = 0;  ///< Increases by one with each picture of a scanner.
-  GrayImage gray;
-  volume::RgbImage colour;  ///< Picture with Doppler colours and box; empty without Doppler.
+  image::GrayImage gray;
+  image::RgbImage colour;  ///< Picture with Doppler colours and box; empty without Doppler.
   RasterGeometry raster;
   ScanGeometry scan;
   Pose X_PT;            ///< Pose of the transducer for this picture.

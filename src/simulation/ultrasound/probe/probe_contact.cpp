@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "ultrasound/tissue/acoustic_scene.h"
@@ -127,7 +126,7 @@ double find_dent_reach_mm(const AcousticScene& scene, const ScanGeometry& geomet
 
 namespace {
 
-constexpr double kGreatestTilt = 15.0 * std::numbers::pi / 180.0;  ///< In the image plane, to improve the contact.
+constexpr double kGreatestTilt = radians(15.0);  ///< In the image plane, to improve the contact.
 constexpr double kPressStep_mm = 0.5;
 constexpr double kTouchingShare = 0.97;  ///< Required share of scanlines with contact.
 

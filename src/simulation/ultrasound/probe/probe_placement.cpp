@@ -23,7 +23,7 @@ using detail::ViewRays;
 
 constexpr double kFarthestSkin_mm = 400.0;
 constexpr double kSearchStep_mm = 4.0;
-constexpr double kFreeSlant = 30.0 * std::numbers::pi / 180.0;  ///< Between beam and skin, without a penalty.
+constexpr double kFreeSlant = radians(30.0);  ///< Between beam and skin, without a penalty.
 constexpr int kProbedLines = 33;
 constexpr double kWayStep_mm = 2.0;
 
@@ -39,10 +39,10 @@ constexpr double kFarCost = 0.4;   ///< A position at the end of the wide search
 constexpr double kTurnCost = 0.2;  ///< A plane rotated by kMostTurn.
 
 // The wide search.
-constexpr double kFarthest = 60.0 * std::numbers::pi / 180.0;  ///< From the direction of the view.
-constexpr double kFarStep = 8.0 * std::numbers::pi / 180.0;
-constexpr double kMostTurn = 60.0 * std::numbers::pi / 180.0;  ///< Of the plane around the beam.
-constexpr int kTurns = 2;                                      ///< Steps to each side.
+constexpr double kFarthest = radians(60.0);  ///< From the direction of the view.
+constexpr double kFarStep = radians(8.0);
+constexpr double kMostTurn = radians(60.0);  ///< Of the plane around the beam.
+constexpr int kTurns = 2;                    ///< Steps to each side.
 constexpr double kRefine_mm = 12.0;
 
 /// First intersection with the skin from a point inside; empty if the line leaves the volume before.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -74,7 +73,7 @@ Result<ProbeView> read_view(const config::TomlTable& row, const std::string& nam
   if (direction.norm() < 0.1) return fail("direction has no length", row.where(), "give a direction that is not zero");
   view.direction_P = direction.normalized();
   TROCAR_TRY(const double angle_deg, row.number_or("angle_deg", {-180.0, 180.0}, 0.0));
-  view.angle_rad = angle_deg * std::numbers::pi / 180.0;
+  view.angle_rad = radians(angle_deg);
   TROCAR_TRY(view.pressed_mm, row.number_or("pressed_mm", {0.0, 15.0}, view.pressed_mm));
   TROCAR_TRY(view.search_mm, row.number_or("search_mm", {0.0, 60.0}, view.search_mm));
   if (row.has("frequency_mhz")) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -13,8 +12,6 @@
 
 namespace trocar::ultrasound {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 constexpr std::pair<std::string_view, TransducerKind> kKinds[] = {
     {"convex", TransducerKind::kConvex},
@@ -52,7 +49,7 @@ class Reader {
 
  private:
   const config::TomlTable& row_;
-  std::vector<std::string_view> known_{"description", "kind", "pressure_mpa", "power_mw"};  // see acoustic_output.h
+  std::vector<std::string_view> known_{"description", "kind", "pressure_mpa", "power_mw"};  // see AcousticOutput
 };
 
 Result<TransducerKind> read_kind(const config::TomlTable& row) {

@@ -64,8 +64,7 @@ std::vector<std::string> results(const Measurement& measurement) {
             fmt::format("Area {:.2f} cm²", kCm2_per_mm2 * ellipse->area_mm2()),
             fmt::format("Circ {:.1f} mm", ellipse->circumference_mm())};
   }
-  constexpr double kDeg_per_rad = 180.0 / std::numbers::pi;
-  return {fmt::format("Angle {:.1f}°", kDeg_per_rad * std::get<AngleCaliper>(measurement).angle_rad())};
+  return {fmt::format("Angle {:.1f}°", kDegPerRad * std::get<AngleCaliper>(measurement).angle_rad())};
 }
 
 namespace {

@@ -5,20 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volume/image.h"
+#include "image/image.h"
 
 namespace trocar::ultrasound {
 namespace {
 
-constexpr volume::Rgb kMarkerInk = {90, 200, 120};
-constexpr volume::Rgb kFocusInk = {240, 200, 80};
+constexpr image::Rgb kMarkerInk = {90, 200, 120};
+constexpr image::Rgb kFocusInk = {240, 200, 80};
 
 /// Layout, in dots of the text.
 constexpr int kMargin = 6;
 constexpr int kLineHeight = 10;
 constexpr int kShortTick = 3;
 constexpr int kLongTick = 6;
-constexpr int kLabelColumns = 2 * volume::kGlyphAdvance;  ///< Space for two digits right of the scale.
+constexpr int kLabelColumns = 2 * image::kGlyphAdvance;  ///< Space for two digits right of the scale.
 constexpr int kWedgeColumns = 8;
 constexpr int kTriangle = 4;
 constexpr int kMarkerDistance = 9;
@@ -44,7 +44,7 @@ void add_depth_scale(ScanAnnotation& annotation, const RasterGeometry& raster, c
     const double row = raster.to_pixel({0.0, depth_mm}).y();
     annotation.ticks.push_back({row, (is_long ? kLongTick : kShortTick) * dot, depth_mm});
     if (!is_long) continue;
-    const int top = static_cast<int>(std::lround(row)) - volume::kGlyphHeight / 2 * dot;
+    const int top = static_cast<int>(std::lround(row)) - image::kGlyphHeight / 2 * dot;
     annotation.texts.push_back({annotation.scale_column + 3 * dot, top, depth_label(depth_mm)});
   }
 }
@@ -78,18 +78,18 @@ void add_wedge(ScanAnnotation& annotation, const RasterGeometry& raster, const D
   }
 }
 
-void draw_box(volume::RgbImage& image, int column, int row, int columns, int rows, volume::Rgb colour) {
+void draw_box(image::RgbImage& image, int column, int row, int columns, int rows, image::Rgb colour) {
   for (int r = std::max(row, 0); r < std::min(row + rows, image.rows); ++r) {
     for (int c = std::max(column, 0); c < std::min(column + columns, image.columns); ++c) image.at(c, r) = colour;
   }
 }
 
 /// Filled, with its point at (column, row), extending to the right.
-void draw_triangle(volume::RgbImage& image, int column, int row, int size, volume::Rgb colour) {
+void draw_triangle(image::RgbImage& image, int column, int row, int size, image::Rgb colour) {
   for (int i = 0; i <= size; ++i) draw_box(image, column - i, row - i, 1, 2 * i + 1, colour);
 }
 
-void draw_disc(volume::RgbImage& image, const Vec2& middle, double radius, volume::Rgb colour) {
+void draw_disc(image::RgbImage& image, const Vec2& middle, double radius, image::Rgb colour) {
   for (int r = static_cast<int>(middle.y() - radius); r <= static_cast<int>(middle.y() + radius) + 1; ++r) {
     for (int c = static_cast<int>(middle.x() - radius); c <= static_cast<int>(middle.x() + radius) + 1; ++c) {
       if ((Vec2(c, r) - middle).norm() <= radius) draw_box(image, c, r, 1, 1, colour);
@@ -117,15 +117,7 @@ ScanAnnotation make_scan_annotation(const RasterGeometry& raster, const ScanGeom
   return annotation;
 }
 
-volume::RgbImage to_rgb(const GrayImage& image) {
-  volume::RgbImage result(image.columns, image.rows);
-  std::transform(image.pixels.begin(), image.pixels.end(), result.pixels.begin(), [](std::uint8_t gray) {
-    return volume::Rgb{gray, gray, gray};
-  });
-  return result;
-}
-
-void draw_annotation(volume::RgbImage& image, const ScanAnnotation& annotation) {
+void draw_annotation(image::RgbImage& image, const ScanAnnotation& annotation) {
   const int dot = annotation.text_scale;
   for (const ScanAnnotation::Tick& tick : annotation.ticks) {
     const int row = static_cast<int>(std::lround(tick.row));
@@ -140,7 +132,7 @@ void draw_annotation(volume::RgbImage& image, const ScanAnnotation& annotation) 
              {gray, gray, gray});
   }
   for (const ScanAnnotation::Text& text : annotation.texts) {
-    volume::draw_text(image, text.column, text.row, text.text, kTextInk, dot);
+    image::draw_text(image, text.column, text.row, text.text, kTextInk, dot);
   }
 }
 

@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "image/image.h"
 #include "ultrasound/scanner/scanner.h"
-#include "volume/image.h"
 
 namespace trocar::ultrasound {
 
-inline constexpr volume::Rgb kTextInk = {200, 205, 210};  ///< Of texts and ticks beside a picture.
+inline constexpr image::Rgb kTextInk = {200, 205, 210};  ///< Of texts and ticks beside a picture.
 
 /// Text beside a picture.
 struct ScanCaption {
@@ -49,8 +49,7 @@ struct ScanAnnotation {
 
 ScanAnnotation make_scan_annotation(const RasterGeometry& raster, const ScanGeometry& scan, const ScanCaption& caption);
 
-volume::RgbImage to_rgb(const GrayImage& image);
 /// Draws over a picture of the raster's size; parts beyond the picture are left out.
-void draw_annotation(volume::RgbImage& image, const ScanAnnotation& annotation);
+void draw_annotation(image::RgbImage& image, const ScanAnnotation& annotation);
 
 }  // namespace trocar::ultrasound

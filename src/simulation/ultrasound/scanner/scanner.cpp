@@ -78,7 +78,7 @@ struct Scanner::Impl {
   bool has_state = false;
   std::vector<std::uint8_t> levels;
   std::vector<std::uint8_t> polar;
-  GrayImage image;
+  image::GrayImage image;
 };
 
 void Scanner::Impl::set_scan(const ScanGeometry& new_scan, bool is_mirrored) {
@@ -211,7 +211,7 @@ Scanner::~Scanner() = default;
 Scanner::Scanner(Scanner&&) noexcept = default;
 Scanner& Scanner::operator=(Scanner&&) noexcept = default;
 
-const GrayImage& Scanner::show(const BasebandFrame& frame, std::uint64_t seed) {
+const image::GrayImage& Scanner::show(const BasebandFrame& frame, std::uint64_t seed) {
   const DisplaySettings held = within_ranges(settings);
   impl_->set_scan(frame.geometry, held.is_mirrored);
   const std::size_t count = impl_->lines() * impl_->samples();
@@ -238,7 +238,7 @@ const GrayImage& Scanner::show(const BasebandFrame& frame, std::uint64_t seed) {
   return impl_->image;
 }
 
-const GrayImage& Scanner::show_levels(std::span<const std::uint8_t> levels, const ScanGeometry& scan) {
+const image::GrayImage& Scanner::show_levels(std::span<const std::uint8_t> levels, const ScanGeometry& scan) {
   const DisplaySettings held = within_ranges(settings);
   impl_->set_scan(scan, held.is_mirrored);
   const std::size_t n = impl_->samples();

@@ -5,19 +5,13 @@
 #include <span>
 #include <vector>
 
+#include "image/image.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/engine/echo_engine.h"
 #include "ultrasound/probe/scan_geometry.h"
 #include "ultrasound/scanner/display_settings.h"
 
 namespace trocar::ultrasound {
-
-/// A gray picture, row by row from the top left.
-struct GrayImage {
-  int columns = 0;
-  int rows = 0;
-  std::vector<std::uint8_t> pixels;
-};
 
 /// The back end of a scanner: receiver noise and near-field clutter, TGC, envelope, log compression, persistence, gain
 /// and gray map, scan conversion (docs/physics.md U10–U11). Buffers are allocated once for a geometry (of scan and
@@ -36,10 +30,10 @@ class Scanner {
   /// Picture of a frame; `seed` is the seed of its noise. Of a frame that renewed some scanlines only, the others stay
   /// as they are, unless settings change. Valid until the next call. Non-finite samples and pixels beyond the scan are
   /// black. The result does not depend on the number of threads.
-  const GrayImage& show(const BasebandFrame& frame, std::uint64_t seed);
+  const image::GrayImage& show(const BasebandFrame& frame, std::uint64_t seed);
   /// Displays stored levels of a cine loop (see levels()) with the present gain, dynamic range and gray map. Does not
   /// change persistence.
-  const GrayImage& show_levels(std::span<const std::uint8_t> levels, const ScanGeometry& scan);
+  const image::GrayImage& show_levels(std::span<const std::uint8_t> levels, const ScanGeometry& scan);
 
   /// The last picture before scan conversion, one gray value per sample, scanline by scanline.
   const std::vector<std::uint8_t>& polar() const noexcept;

@@ -123,7 +123,7 @@ FreehandSweep make_freehand_sweep(const std::shared_ptr<const AcousticScene>& sc
     frame.time_s = static_cast<double>(n) / options.frames_per_s;
     const BasebandFrame& echoes = engine.render({X_PT[n], {}, frame.time_s});
     sweep.mean_contact += coupled_share(echoes) / static_cast<double>(X_PT.size());
-    const GrayImage& picture = scanner.show(echoes, mix64(mix64(options.seed) ^ static_cast<std::uint64_t>(n)));
+    const image::GrayImage& picture = scanner.show(echoes, mix64(mix64(options.seed) ^ static_cast<std::uint64_t>(n)));
     sequence.pixels.insert(sequence.pixels.end(), picture.pixels.begin(), picture.pixels.end());
     frame.transforms.emplace("ImageToProbe", image_to_probe);
     frame.transforms.emplace("ProbeToTracker", matrix_of(X_TrackerReference * X_PT[n] * X_TProbe));

@@ -12,6 +12,7 @@
 #include "core/result.h"
 #include "ultrasound/scanner/scanner.h"
 #include "ultrasound/sweep/detail/limits.h"
+#include "volume/sampling.h"
 
 namespace trocar::ultrasound {
 namespace {
@@ -68,18 +69,10 @@ Frames take_frames(const std::shared_ptr<const AcousticScene>& scene, const Tran
   return frames;
 }
 
-/// Lower neighbour and the weight of the upper one; empty beyond half a sample outside.
-struct LowerNeighbour {
-  std::size_t lower = 0;
-  std::size_t step = 0;  ///< Offset of the upper one; 0 at the end.
-  float part = 0.0F;
-};
-bool find_lower_neighbour(double at, int count, LowerNeighbour& between) {
+/// false beyond half a sample outside.
+bool find_neighbours(double at, int count, volume::Neighbours& found) {
   if (!(at > -0.5 && at < count - 0.5)) return false;
-  const double held = std::clamp(at, 0.0, static_cast<double>(count - 1));
-  const int lower = std::min(static_cast<int>(held), std::max(count - 2, 0));
-  between = {static_cast<std::size_t>(lower), count > 1 ? std::size_t{1} : std::size_t{0},
-             static_cast<float>(held - lower)};
+  found = volume::neighbours(at, count);
   return true;
 }
 
@@ -89,22 +82,21 @@ constexpr long kDarkest = 1;
 /// Trilinear between frames, scanlines and samples.
 std::uint8_t gray_at(const Frames& frames, const SweepGeometry& geometry, const Vec3& p_T) {
   const SweepGeometry::Place place = geometry.to_place(p_T);
-  LowerNeighbour frame, line, sample;
+  volume::Neighbours frame, line, sample;
   const double depth_samples = place.polar.depth_mm / geometry.scan.sample_mm() - 0.5;
-  if (!find_lower_neighbour(place.frame, geometry.frames, frame) ||
-      !find_lower_neighbour(place.polar.line, geometry.scan.lines, line) ||
-      !find_lower_neighbour(depth_samples, geometry.scan.samples, sample))
+  if (!find_neighbours(place.frame, geometry.frames, frame) ||
+      !find_neighbours(place.polar.line, geometry.scan.lines, line) ||
+      !find_neighbours(depth_samples, geometry.scan.samples, sample))
     return 0;
-  const auto samples = static_cast<std::size_t>(geometry.scan.samples);
-  const auto lines = static_cast<std::size_t>(geometry.scan.lines);
-  const std::uint8_t* corner = frames.gray.data() + (frame.lower * lines + line.lower) * samples + sample.lower;
-  const auto along_sample = [&](const std::uint8_t* gray) {
-    return std::lerp(static_cast<float>(gray[0]), static_cast<float>(gray[sample.step]), sample.part);
+  const auto between = [](const volume::Neighbours& n, const auto& value) {
+    return std::lerp(static_cast<float>(value(n.low)), static_cast<float>(value(n.high)), static_cast<float>(n.share));
   };
-  const auto along_line = [&](const std::uint8_t* gray) {
-    return std::lerp(along_sample(gray), along_sample(gray + line.step * samples), line.part);
-  };
-  const float value = std::lerp(along_line(corner), along_line(corner + frame.step * lines * samples), frame.part);
+  const float value = between(frame, [&](std::int64_t f) {
+    return between(line, [&](std::int64_t l) {
+      const std::int64_t begin = (f * geometry.scan.lines + l) * geometry.scan.samples;
+      return between(sample, [&](std::int64_t s) { return frames.gray[static_cast<std::size_t>(begin + s)]; });
+    });
+  });
   return static_cast<std::uint8_t>(std::max(std::lround(value), kDarkest));
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -82,8 +83,9 @@ class RowSampler {
 
   /// Values along the row (j, k) of the finer grid.
   void sample(std::int64_t j, std::int64_t k, std::vector<float>& out) {
-    const auto [j0, j1, fj] = neighbours(1, j);
-    const auto [k0, k1, fk] = neighbours(2, k);
+    const auto [j0, j1, share_j] = neighbours(1, j);
+    const auto [k0, k1, share_k] = neighbours(2, k);
+    const auto fj = static_cast<float>(share_j), fk = static_cast<float>(share_k);
     const float* rows[4] = {row(j0, k0), row(j1, k0), row(j0, k1), row(j1, k1)};
     for (std::size_t n = 0; n < line_.size(); ++n) {
       const float low = rows[0][n] + fj * (rows[1][n] - rows[0][n]);
@@ -91,29 +93,23 @@ class RowSampler {
       line_[n] = low + fk * (high - low);
     }
     for (std::size_t i = 0; i < out.size(); ++i) {
-      const auto [i0, i1, fi] = neighbours(0, static_cast<std::int64_t>(i));
+      const auto [i0, i1, share_i] = neighbours(0, static_cast<std::int64_t>(i));
+      const auto fi = static_cast<float>(share_i);
       const float low = line_[static_cast<std::size_t>(i0)];
       out[i] = low + fi * (line_[static_cast<std::size_t>(i1)] - low);
     }
   }
 
  private:
-  struct Neighbours {
-    std::int64_t low, high;
-    float fraction;
-  };
   static std::size_t line_size(const volume::FloatGrid& grid) {
     return static_cast<std::size_t>(grid.geometry.size[0]);
   }
   const float* row(std::int64_t j, std::int64_t k) const {
     return coarse_.voxels.data() + coarse_.geometry.offset({0, j, k});
   }
-  Neighbours neighbours(std::size_t axis, std::int64_t n) const {
+  volume::Neighbours neighbours(std::size_t axis, std::int64_t n) const {
     const auto a = static_cast<Eigen::Index>(axis);
-    const std::int64_t last = coarse_.geometry.size[axis] - 1;
-    const double at = std::clamp(offset_[a] + static_cast<double>(n) * step_[a], 0.0, static_cast<double>(last));
-    const auto low = static_cast<std::int64_t>(at);
-    return {low, std::min(low + 1, last), static_cast<float>(at - static_cast<double>(low))};
+    return volume::neighbours(offset_[a] + static_cast<double>(n) * step_[a], coarse_.geometry.size[axis]);
   }
 
   const volume::FloatGrid& coarse_;
@@ -122,16 +118,9 @@ class RowSampler {
   std::vector<float> line_;
 };
 
-/// Position of a target voxel between source voxels, along one axis.
-struct VoxelNeighbours {
-  std::int64_t low, high;
-  float fraction;
-};
-
-VoxelNeighbours between_voxels(double at, std::int64_t size) {
-  const double inside = std::clamp(at, 0.0, static_cast<double>(size - 1));
-  const auto low = static_cast<std::int64_t>(inside);
-  return {low, std::min(low + 1, size - 1), static_cast<float>(inside - static_cast<double>(low))};
+std::array<std::pair<std::int64_t, float>, 2> weighted(const volume::Neighbours& n) noexcept {
+  const auto share = static_cast<float>(n.share);
+  return {{{n.low, 1.0F - share}, {n.high, share}}};
 }
 
 /// Fills target slices one by one, each from the two adjacent source slices.
@@ -150,14 +139,14 @@ class SceneSlices {
         votes_(source.geometry.size[0], source.geometry.size[1], taps(0), taps(1)),
         distance_mm_(static_cast<std::size_t>(scene.geometry.size[0])) {
     for (std::int64_t i = 0; i < scene.geometry.size[0]; ++i)
-      columns_.push_back(between_voxels(offset_[0] + static_cast<double>(i) * step_[0], source.geometry.size[0]));
+      columns_.push_back(volume::neighbours(offset_[0] + static_cast<double>(i) * step_[0], source.geometry.size[0]));
   }
 
   void fill(std::int64_t k) {
-    across_ = between_voxels(offset_[2] + static_cast<double>(k) * step_[2], source_.geometry.size[2]);
+    across_ = volume::neighbours(offset_[2] + static_cast<double>(k) * step_[2], source_.geometry.size[2]);
     if (across_.low != slice_) blend_.set_slices(across_.low);
     slice_ = across_.low;
-    blend_.blend(static_cast<double>(across_.fraction), tissue_);
+    blend_.blend(static_cast<float>(across_.share), tissue_);
     votes_.set_slice(tissue_);
     for (std::int64_t j = 0; j < scene_.geometry.size[1]; ++j) fill_row(j, k);
   }
@@ -170,7 +159,7 @@ class SceneSlices {
 
   void fill_row(std::int64_t j, std::int64_t k) {
     skin_rows_.sample(j, k, distance_mm_);
-    along_v_ = between_voxels(offset_[1] + static_cast<double>(j) * step_[1], source_.geometry.size[1]);
+    along_v_ = volume::neighbours(offset_[1] + static_cast<double>(j) * step_[1], source_.geometry.size[1]);
     const std::size_t row = scene_.geometry.offset({0, j, k});
     for (std::size_t i = 0; i < distance_mm_.size(); ++i) {
       const auto distance_mm = static_cast<double>(distance_mm_[i]);
@@ -183,17 +172,14 @@ class SceneSlices {
   }
 
   /// Linear between the surrounding source voxels of the tissue.
-  std::int8_t texture(const VoxelNeighbours& along_u, std::uint8_t tissue) const {
+  std::int8_t texture(const volume::Neighbours& along_u, std::uint8_t tissue) const {
     float sum = 0.0F;
     float weight = 0.0F;
-    for (const auto& [w, share_w] :
-         {std::pair{across_.low, 1.0F - across_.fraction}, {across_.high, across_.fraction}}) {
+    for (const auto& [w, share_w] : weighted(across_)) {
       const std::uint8_t* tissues = source_.tissue_slice(w);
       const std::int8_t* textures = source_.texture_slice(w);
-      for (const auto& [v, share_v] :
-           {std::pair{along_v_.low, 1.0F - along_v_.fraction}, {along_v_.high, along_v_.fraction}}) {
-        for (const auto& [u, share_u] :
-             {std::pair{along_u.low, 1.0F - along_u.fraction}, {along_u.high, along_u.fraction}}) {
+      for (const auto& [v, share_v] : weighted(along_v_)) {
+        for (const auto& [u, share_u] : weighted(along_u)) {
           const std::int64_t n = v * source_.geometry.size[0] + u;
           const float share = tissues[n] == tissue ? share_u * share_v * share_w : 0.0F;
           sum += share * static_cast<float>(textures[n]);
@@ -212,8 +198,8 @@ class SceneSlices {
   detail::SliceBlend blend_;
   detail::TissueVotes votes_;
   std::vector<float> distance_mm_;
-  std::vector<VoxelNeighbours> columns_;
-  VoxelNeighbours along_v_{}, across_{};
+  std::vector<volume::Neighbours> columns_;
+  volume::Neighbours along_v_{}, across_{};
   std::int64_t slice_ = -1;
   std::vector<std::uint8_t> tissue_;
 };

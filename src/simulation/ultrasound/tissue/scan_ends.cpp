@@ -9,7 +9,7 @@ namespace trocar::ultrasound {
 namespace {
 
 constexpr double kBody_mm = 3.0;  ///< A face cuts the body if the skin is farther outside than this.
-constexpr volume::Rgb kHatch{58, 66, 78};
+constexpr image::Rgb kHatch{58, 66, 78};
 constexpr int kHatchStep_px = 12, kHatchWidth_px = 1;
 constexpr int kHatchColumns = 640;  ///< Up to this number of columns, lines have one pixel.
 
@@ -99,7 +99,7 @@ std::vector<Vec2> scanned_polygon_T(const std::vector<ScanEnd>& ends, const Pose
   return polygon;
 }
 
-void hatch_unscanned(volume::RgbImage& image, const RasterGeometry& raster, const ScanGeometry& scan, const Pose& X_PT,
+void hatch_unscanned(image::RgbImage& image, const RasterGeometry& raster, const ScanGeometry& scan, const Pose& X_PT,
                      const std::vector<ScanEnd>& ends) {
   if (ends.empty()) return;
   const int dot = std::max(1, image.columns / kHatchColumns);

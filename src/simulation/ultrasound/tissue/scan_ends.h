@@ -4,8 +4,8 @@
 
 #include "anatomy/patient.h"
 #include "geometry/pose.h"
+#include "image/image.h"
 #include "ultrasound/probe/scan_geometry.h"
-#include "volume/image.h"
 
 namespace trocar::ultrasound {
 
@@ -29,7 +29,7 @@ double unscanned_share(const std::vector<ScanEnd>& ends, const Pose& X_PT, const
 std::vector<Vec2> scanned_polygon_T(const std::vector<ScanEnd>& ends, const Pose& X_PT, const ScanGeometry& scan);
 
 /// Hatches the part of the scan that was not scanned by the CT.
-void hatch_unscanned(volume::RgbImage& image, const RasterGeometry& raster, const ScanGeometry& scan, const Pose& X_PT,
+void hatch_unscanned(image::RgbImage& image, const RasterGeometry& raster, const ScanGeometry& scan, const Pose& X_PT,
                      const std::vector<ScanEnd>& ends);
 
 }  // namespace trocar::ultrasound

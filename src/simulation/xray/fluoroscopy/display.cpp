@@ -182,10 +182,10 @@ GrayWindow window_of(std::span<const float> values, std::span<const float> signa
   return window;
 }
 
-GrayImage to_gray(std::span<const float> values, int columns, int rows, const GrayWindow& window, bool is_inverted,
-                  const FieldPixels& field) {
+image::GrayImage to_gray(std::span<const float> values, int columns, int rows, const GrayWindow& window,
+                         bool is_inverted, const FieldPixels& field) {
   TROCAR_CHECK(values.size() == static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  GrayImage image{columns, rows, std::vector<std::uint8_t>(values.size(), 0)};
+  image::GrayImage image{columns, rows, std::vector<std::uint8_t>(values.size(), 0)};
   const float width = std::max(window.high - window.low, 1e-6F);
   for (int row = field.first_row; row < field.last_row; ++row)
     for (int column = field.first_column; column < field.last_column; ++column) {
@@ -237,7 +237,7 @@ void RoadMap::add(std::span<const float> difference) {
   for (std::size_t n = 0; n < difference.size(); ++n) greatest_[n] = std::max(greatest_[n], difference[n]);
 }
 
-void RoadMap::overlay(float least, float full, GrayImage& image) const {
+void RoadMap::overlay(float least, float full, image::GrayImage& image) const {
   if (greatest_.size() != image.pixels.size()) return;
   const float scale = kWeight / std::max(full - least, 1e-6F);
   for (std::size_t n = 0; n < greatest_.size(); ++n) {

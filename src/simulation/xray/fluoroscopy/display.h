@@ -5,18 +5,13 @@
 #include <span>
 #include <vector>
 
+#include "image/image.h"
 #include "xray/geometry/c_arm.h"
 
 namespace trocar::xray {
 
 /// A lower signal is replaced by this one before its logarithm is taken.
 inline constexpr float kLeastSignal = 1e-6F;
-
-/// Gray image, row by row from the upper left.
-struct GrayImage {
-  int columns = 0, rows = 0;
-  std::vector<std::uint8_t> pixels;
-};
 
 /// Values that are shown between black and white.
 struct GrayWindow {
@@ -54,8 +49,8 @@ GrayWindow window_of(std::span<const float> values, std::span<const float> signa
                      const FieldPixels& field, float least_width = 0.1F);
 
 /// Eight bits, even over the window and flatter towards and beyond its ends; outside of the field (shutters) black.
-GrayImage to_gray(std::span<const float> values, int columns, int rows, const GrayWindow& window, bool is_inverted,
-                  const FieldPixels& field);
+image::GrayImage to_gray(std::span<const float> values, int columns, int rows, const GrayWindow& window,
+                         bool is_inverted, const FieldPixels& field);
 
 /// Digital subtraction: the mean of mask frames, from which the logarithm of the live signal is subtracted.
 class MaskSubtraction {
@@ -82,7 +77,7 @@ class RoadMap {
   std::span<const float> greatest() const noexcept { return greatest_; }
   /// Blends the map into an image of the same size: opacified pixels become light, in proportion. `full`: opacification
   /// that is shown fully. Below `least` (noise) nothing is shown.
-  void overlay(float least, float full, GrayImage& image) const;
+  void overlay(float least, float full, image::GrayImage& image) const;
 
  private:
   std::vector<float> greatest_;

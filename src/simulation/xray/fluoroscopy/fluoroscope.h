@@ -40,8 +40,8 @@ struct FluoroscopyRequest {
 
 /// One image of a fluoroscope.
 struct FluoroscopyFrame {
-  GrayImage gray;       ///< Black before the first pulse.
-  bool is_held = true;  ///< The pedal is up: last-image hold.
+  image::GrayImage gray;  ///< Black before the first pulse.
+  bool is_held = true;    ///< The pedal is up: last-image hold.
   bool is_subtracted = false;
   int mask_frames = 0;  ///< Frames in the mask of the subtraction.
   CArm arm;             ///< At the time of the pulse, as the next five.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "config/toml.h"
 
@@ -14,7 +13,6 @@ namespace trocar::xray {
 namespace {
 
 constexpr double kBehindIsocentre_mm = 50.0;  ///< Least distance of the detector behind the isocentre.
-constexpr double kRad = std::numbers::pi / 180.0;
 
 struct Limit {
   const char* name;
@@ -27,8 +25,9 @@ struct ImageAxes {
 };
 
 ImageAxes image_axes(const CArm& arm) noexcept {
-  const double sin_lao = std::sin(arm.lao_deg * kRad), cos_lao = std::cos(arm.lao_deg * kRad);
-  const double sin_cranial = std::sin(arm.cranial_deg * kRad), cos_cranial = std::cos(arm.cranial_deg * kRad);
+  const double sin_lao = std::sin(arm.lao_deg * kRadPerDeg), cos_lao = std::cos(arm.lao_deg * kRadPerDeg);
+  const double sin_cranial = std::sin(arm.cranial_deg * kRadPerDeg),
+               cos_cranial = std::cos(arm.cranial_deg * kRadPerDeg);
   return {{cos_lao, sin_lao, 0.0}, {-sin_cranial * sin_lao, sin_cranial * cos_lao, cos_cranial}};
 }
 
@@ -60,7 +59,7 @@ Status check_c_arm(const CArm& arm) {
 }
 
 Vec3 towards_detector_P(const CArm& arm) noexcept {
-  const double lao = arm.lao_deg * kRad, cranial = arm.cranial_deg * kRad;
+  const double lao = arm.lao_deg * kRadPerDeg, cranial = arm.cranial_deg * kRadPerDeg;
   return {std::sin(lao) * std::cos(cranial), -std::cos(lao) * std::cos(cranial), std::sin(cranial)};
 }
 

@@ -57,7 +57,7 @@ struct CArmPreset {
   std::vector<double> fields_mm;  ///< Edges of the fields that it offers, falling.
   double largest_lao_deg = 90.0;  ///< Reach to the left and to the right.
   double largest_cranial_deg = 45.0;
-  double kv = 80.0, aluminium_mm = 3.0, copper_mm = 0.1;  ///< Tube (spectrum.h).
+  double kv = 80.0, aluminium_mm = 3.0, copper_mm = 0.1;  ///< Tube (xray/physics/beam.h).
   double detector_mm = 0.6;                               ///< Caesium iodide (beam.h).
 };
 

@@ -153,8 +153,7 @@ double stopping_kev_cm2_per_g(double t_kev) {
 /// Bremsstrahlung photons per electron and keV that leave the anode.
 double bremsstrahlung(double kv, double kev) {
   constexpr int kSteps = 100;
-  const double way_out =
-      attenuation_cm2_per_g(kTungsten, kev) / (slowing_of(kv) * std::sin(kAnode_deg * std::numbers::pi / 180.0));
+  const double way_out = attenuation_cm2_per_g(kTungsten, kev) / (slowing_of(kv) * std::sin(radians(kAnode_deg)));
   const double step = (kv - kev) / kSteps;
   double sum = 0.0;
   for (int n = 0; n < kSteps; ++n) {
@@ -176,8 +175,7 @@ double line_photons(double kv, const Line& line) {
   constexpr int kSteps = 100;
   constexpr double kYield = 1.349e-3, kExponent = 1.648;
   const double depth = (kv * kv - kTungstenKEdge_kev * kTungstenKEdge_kev) / slowing_of(kv);
-  const double way_out =
-      attenuation_cm2_per_g(kTungsten, line.kev) * depth / std::sin(kAnode_deg * std::numbers::pi / 180.0);
+  const double way_out = attenuation_cm2_per_g(kTungsten, line.kev) * depth / std::sin(radians(kAnode_deg));
   double escaping = 0.0;
   for (int n = 0; n < kSteps; ++n) {
     const double x = (n + 0.5) / kSteps;

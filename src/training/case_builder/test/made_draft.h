@@ -1,5 +1,6 @@
 #pragma once
 
+#include "anatomy/label_statistics.h"
 #include "anatomy/testing/shipped_tissues.h"
 #include "case_builder/case_draft.h"
 #include "core/files/folders.h"

@@ -5,18 +5,18 @@
 #include <set>
 #include <thread>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
 #include "core/testing/no_threads.h"
 #include "io/patient/patient_cache.h"
 #include "io/patient/patient_folder.h"
+#include "phantom/phantom.h"
 #include "surface/extract_surface.h"
 
 namespace trocar::cases {
 namespace {
 
 std::shared_ptr<const anatomy::VirtualPatient> coarse() {
-  auto patient = anatomy::generate_phantom("abdomen", 3, {{60, 48, 48}});
+  auto patient = phantom::generate_phantom("abdomen", 3, {{60, 48, 48}});
   EXPECT_TRUE(patient) << patient.error().text();
   return std::make_shared<const anatomy::VirtualPatient>(*std::move(patient));
 }

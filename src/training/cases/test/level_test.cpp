@@ -1,11 +1,11 @@
 // Levels of difficulty and needles, as options of a case.
 #include <gtest/gtest.h>
 
-#include "anatomy/phantom/cases.h"
-#include "anatomy/phantom/phantom.h"
 #include "cases/prepare_case.h"
 #include "core/files/folders.h"
 #include "core/files/output_file.h"
+#include "phantom/cases.h"
+#include "phantom/phantom.h"
 
 namespace trocar::cases {
 namespace {
@@ -59,8 +59,8 @@ TEST(Level, BodyFactorsNameValidParameters) {
       if (level.body.empty()) continue;
       const std::string source = with_body("lumbar-1", level);
       ASSERT_TRUE(source.starts_with("lumbar-1@")) << source;
-      anatomy::phantom::BodyParameters body;
-      const Status status = anatomy::phantom::scale_body(body, std::string_view(source).substr(9));
+      phantom::BodyParameters body;
+      const Status status = phantom::scale_body(body, std::string_view(source).substr(9));
       EXPECT_TRUE(status) << task.name << ": " << (status ? "" : status.error().text());
     }
   }

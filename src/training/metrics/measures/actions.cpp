@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <numbers>
 
 #include "metrics/attempt_metrics.h"
 #include "metrics/detail/uniform_sampler.h"
@@ -45,8 +44,7 @@ class Actions : public Metric {
       if (sample.is_joined) {
         constexpr double kPeriod_s = detail::UniformSampler::kPeriod_s;
         translations_.add((sample.tip_P - last_.tip_P).norm() / kPeriod_s, kPeriod_s);
-        rotations_.add(angle_between_rad(sample.axis_P, last_.axis_P) * 180.0 / std::numbers::pi / kPeriod_s,
-                       kPeriod_s);
+        rotations_.add(degrees(angle_between_rad(sample.axis_P, last_.axis_P)) / kPeriod_s, kPeriod_s);
       }
       last_ = sample;
     });

@@ -1,5 +1,4 @@
 #include <array>
-#include <numbers>
 
 #include "metrics/curve_distances.h"
 #include "metrics/detail/body.h"
@@ -73,8 +72,7 @@ class EndPosition : public Metric {
     else
       values[1].missing = "the needle did not enter the body";
     if (path.line_P.length_mm() > 0.0)
-      values[2].set(angle_between_rad(last.axis_A(), path.line_P.b - path.line_P.a) * 180.0 / std::numbers::pi,
-                    last.time_s);
+      values[2].set(degrees(angle_between_rad(last.axis_A(), path.line_P.b - path.line_P.a)), last.time_s);
     else
       values[2].missing = "the expert path has no length";
     if (end.inserted_P) {

@@ -4,7 +4,7 @@
 
 namespace trocar::metrics {
 
-// One function per file of this folder. catalogue.cpp lists them.
+// The groups of the metrics; metric.cpp lists them in the order of reports.
 MetricGroup end_position_metrics();
 MetricGroup curve_distance_metrics();
 MetricGroup structure_metrics();

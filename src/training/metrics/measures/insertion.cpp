@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <numbers>
 
 #include "metrics/detail/body.h"
 #include "metrics/detail/uniform_sampler.h"
@@ -125,7 +124,7 @@ class RedirectionCounter {
     if (depth_mm < mark_mm_ + kAdvance_mm) return;
     mark_mm_ = depth_mm;
     const Vec3& axis_P = step.now.axis_P;
-    if (reference_P_ && angle_between_rad(axis_P, *reference_P_) * 180.0 / std::numbers::pi < kRedirection_deg) return;
+    if (reference_P_ && degrees(angle_between_rad(axis_P, *reference_P_)) < kRedirection_deg) return;
     if (reference_P_) ++count_;
     reference_P_ = axis_P;
   }

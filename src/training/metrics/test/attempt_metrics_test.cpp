@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "tasks/testing/attempt_patient.h"
 
@@ -33,7 +32,7 @@ TEST(Metrics, APlannedAttemptHasNoDeviations) {
 }
 
 TEST(Metrics, OffsetsAreActualMinusPlannedPositions) {
-  const double angle = 5.0 * std::numbers::pi / 180.0;
+  const double angle = radians(5.0);
   const Vec3 entry_P(53.0, 0.0, 46.0);
   const Attempt attempt = make_attempt({entry_P, entry_P + 40.0 * Vec3(std::sin(angle), std::cos(angle), 0.0)});
   const AttemptMetrics metrics = measure_in_box(attempt.samples, attempt.fired);

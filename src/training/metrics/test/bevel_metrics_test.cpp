@@ -1,8 +1,6 @@
 // Angle between the bevel and the fibres that it has to part.
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "metrics/testing/recording.h"
 #include "tasks/fit_to_patient.h"
 #include "tasks/testing/attempt_patient.h"
@@ -33,7 +31,7 @@ Moment turned_puncture(double time_s, double turned_deg, std::uint8_t layer) {
   moment.time_s = time_s;
   set_depth(moment, 55.0);
   moment.tip_P = {50.0, 55.0, 50.0};
-  const double turned_rad = turned_deg * std::numbers::pi / 180.0;
+  const double turned_rad = radians(turned_deg);
   moment.R_PN = tasks::needle_rotation(Vec3::UnitY(), {std::cos(turned_rad), 0.0, std::sin(turned_rad)});
   moment.events = telemetry::TickEvents{};
   (*moment.events)[0] = {telemetry::EventKind::kPuncture, layer};

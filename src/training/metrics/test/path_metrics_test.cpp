@@ -1,8 +1,6 @@
 // The needle against expert paths.
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "metrics/curve_distances.h"
 #include "metrics/testing/recording.h"
 
@@ -43,7 +41,7 @@ TEST(PathMetrics, OvershootIsOnThePathButMissesTheTarget) {
 }
 
 TEST(PathMetrics, MeasuresAngleAndEndOffsetOfATiltedPath) {
-  const double angle = 8.0 * std::numbers::pi / 180.0;
+  const double angle = radians(8.0);
   const Vec3 axis_P(std::sin(angle), std::cos(angle), 0.0);
   const Recording recording = record(3.0, 200.0, [&](double t, Moment& m) {
     m.axis_P = axis_P;

@@ -10,7 +10,7 @@ namespace trocar::report::detail {
 /// Title of the task; its name as words if the case is not at hand.
 std::string title_of(const storage::Session& session, const ReportStory& story);
 std::string page_header(const storage::Session& session, const ReportStory& story);
-// verdict_sections.cpp, in the order of reading.
+// The verdict (verdict.cpp), in the order of reading.
 /// Passed or not, with the reasons; a text if the session has no outcome.
 std::string verdict_section(const storage::Session& session);
 /// The first thing to improve, then the other hints.

@@ -1,8 +1,6 @@
 // Rules about the needle's way: level of the entry, bevel, entry zone, distance from a landmark.
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "scoring/test/outcome_support.h"
 #include "tasks/fit_to_patient.h"
 #include "telemetry/tick_sample.h"
@@ -55,7 +53,7 @@ TEST(Bevel, IsJudgedAtThePunctureOfItsLayer) {
   EXPECT_EQ(none.points, 0.0);
   EXPECT_EQ(part_value_text(none), "not judged");
   const auto points_at = [&](double turned_deg) {
-    const double turned_rad = turned_deg * std::numbers::pi / 180.0;
+    const double turned_rad = radians(turned_deg);
     const Mat3 R_PN = tasks::needle_rotation(Vec3::UnitY(), {std::cos(turned_rad), 0.0, std::sin(turned_rad)});
     const Eigen::Quaterniond q(R_PN);
     for (telemetry::TickSample& sample : attempt.samples) sample.device_rotation_wxyz = {q.w(), q.x(), q.y(), q.z()};

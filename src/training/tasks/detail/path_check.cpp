@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "tasks/detail/block_grid.h"
 #include "volume/sampling.h"
@@ -16,7 +15,6 @@ constexpr double kScreenStep_mm = 2.0;
 constexpr double kWalkStep_mm = 0.25;
 constexpr double kSkinTolerance_mm = 0.5;  ///< Above the skin: still a fold of it, not outside the body.
 constexpr double kMinMuscle_mm = 2.0;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 bool is_near_border(const volume::GridGeometry& geometry, const Vec3& p_P, double margin_mm) {
   const Vec3 index = geometry.to_index(p_P);
@@ -205,8 +203,8 @@ PathCandidate trace_path(const PlanningMap& map, const Needle& needle, const Vec
     return reject(PathVerdict::kOutsideZone);
   const Vec3 normal = skin_normal(skin_distance, path.line_P.a);
   const double down = normal.dot(anatomy::gravity_P(map.posture));
-  if (down > std::sin(map.task.max_posterior_deg * kDegree)) return reject(PathVerdict::kOutOfReach);
-  if (normal.dot(outward) < std::cos(map.task.max_entry_angle_deg * kDegree)) return reject(PathVerdict::kGlancing);
+  if (down > std::sin(map.task.max_posterior_deg * kRadPerDeg)) return reject(PathVerdict::kOutOfReach);
+  if (normal.dot(outward) < std::cos(map.task.max_entry_angle_deg * kRadPerDeg)) return reject(PathVerdict::kGlancing);
 
   const double whole = path.length_mm + needle.throw_mm;
   double smallest_mm = kReportedMargin_mm;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tasks/plan.h"
 #include "tasks/testing/attempt_patient.h"
@@ -34,7 +33,7 @@ anatomy::VirtualPatient cylinder() {
 
 /// On the cylinder, by the angle from the front towards the left.
 Vec3 on_cylinder(double left_deg, double z_mm) {
-  const double angle_rad = left_deg * std::numbers::pi / 180.0;
+  const double angle_rad = radians(left_deg);
   return {100.0 * std::sin(angle_rad), -100.0 * std::cos(angle_rad), z_mm};
 }
 
@@ -42,7 +41,7 @@ TEST(EntryZoneByLandmark, IsMeasuredOverTheSkinTowardsMidlineAndHead) {
   anatomy::VirtualPatient patient = cylinder();
   patient.landmarks = {{"left spine", on_cylinder(60.0, -20.0)}, {"right spine", on_cylinder(-60.0, -20.0)}};
   Task task;
-  const double arc_deg = 30.0 / 100.0 * 180.0 / std::numbers::pi;
+  const double arc_deg = degrees(30.0 / 100.0);
   for (const double side : {1.0, -1.0}) {
     task.landmark_zone = LandmarkZone{side > 0.0 ? "left spine" : "right spine", 30.0, 25.0, 20.0};
     const Task fitted = fit_to_patient(task, patient);
@@ -135,8 +134,7 @@ TEST(Bevel, FibresRunAlongTheirStructure) {
   task.bevel = BevelRule{"dura", "csf", 30.0};
   const auto fibres_P = find_fibres(task, patient, Vec3::Zero());
   ASSERT_TRUE(fibres_P);
-  EXPECT_GT(fibres_P->dot(along_P), std::cos(3.0 * std::numbers::pi / 180.0))
-      << "the box cuts the sac's ends obliquely";
+  EXPECT_GT(fibres_P->dot(along_P), std::cos(radians(3.0))) << "the box cuts the sac's ends obliquely";
   EXPECT_FALSE(find_fibres(task, patient, {0.0, 80.0, 0.0}));
 
   const volume::GridGeometry& geometry = patient.labels.geometry;
@@ -144,7 +142,7 @@ TEST(Bevel, FibresRunAlongTheirStructure) {
   const Vec3 end_P = (top_P.z() / along_P.z()) * along_P;
   const auto at_end_P = find_fibres(task, patient, end_P);
   ASSERT_TRUE(at_end_P) << "the scan ends at the point";
-  EXPECT_GT(at_end_P->dot(along_P), std::cos(8.0 * std::numbers::pi / 180.0));
+  EXPECT_GT(at_end_P->dot(along_P), std::cos(radians(8.0)));
 }
 
 TEST(Bevel, IsTurnedAcrossTheFibresForAnyNeedle) {
@@ -159,7 +157,7 @@ TEST(Bevel, IsTurnedAcrossTheFibresForAnyNeedle) {
     EXPECT_NEAR((R_PN.col(2) - axis_P).norm(), 0.0, 1e-12);
     EXPECT_NEAR(bevel_to_fibres_deg(R_PN, fibres_P), 0.0, 1e-6);
     for (const double turned_deg : {20.0, 90.0, 140.0}) {
-      const Mat3 turned = R_PN * Eigen::AngleAxisd(turned_deg * std::numbers::pi / 180.0, Vec3::UnitZ());
+      const Mat3 turned = R_PN * Eigen::AngleAxisd(radians(turned_deg), Vec3::UnitZ());
       EXPECT_NEAR(bevel_to_fibres_deg(turned, fibres_P), turned_deg > 90.0 ? 180.0 - turned_deg : turned_deg, 1e-4);
     }
   }

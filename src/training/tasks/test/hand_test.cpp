@@ -16,21 +16,17 @@ HandCommand wanted(const Vec3& tip_P, const Vec3& v_P = Vec3::Zero()) {
 
 TEST(Hand, PullsLikeASpringAndDamper) {
   const HandParams hand{.mass_kg = 0.2, .stiffness_n_per_mm = 0.5, .damping_ns_per_mm = 0.01};
-  const Vec3 force =
-      hand_force_n(hand, wanted({10.0, 0.0, 0.0}, {0.0, 20.0, 0.0}), Pose::translation({4.0, 0.0, 0.0}), {0, 0, 30.0});
-  EXPECT_TRUE(force.isApprox(Vec3(3.0, 0.2, -0.3), 1e-12));
-}
-
-TEST(Hand, IntegratorSpringMatchesTheForce) {
-  const HandParams hand;
-  const HandCommand command = wanted({1.0, -2.0, 3.0}, {4.0, 5.0, -6.0});
-  const Vec3 tip_P(0.5, 0.25, -1.0);
-  const Vec3 v_P(7.0, -8.0, 9.0);
-  const HandSpring spring = hand_spring(hand, command);
-  const Vec3 force = spring.stiffness_n_per_mm * (spring.anchor_P - tip_P) +
-                     spring.damping_ns_per_mm * (spring.anchor_velocity_P - v_P);
-  EXPECT_TRUE(force.isApprox(hand_force_n(hand, command, Pose::translation(tip_P), v_P), 1e-12));
-  EXPECT_EQ(spring.mass_kg, hand.mass_kg);
+  HandCommand command = wanted({10.0, 0.0, 0.0}, {0.0, 20.0, 0.0});
+  const Vec3 tip_P(4.0, 0.0, 0.0), v_P(0.0, 0.0, 30.0);
+  const auto force = [&] {
+    const HandSpring spring = hand_spring(hand, command);
+    return Vec3(spring.stiffness_n_per_mm * (spring.anchor_P - tip_P) +
+                spring.damping_ns_per_mm * (spring.anchor_velocity_P - v_P));
+  };
+  EXPECT_TRUE(force().isApprox(Vec3(3.0, 0.2, -0.3), 1e-12));
+  EXPECT_EQ(hand_spring(hand, command).mass_kg, 0.2);
+  command.grip = 4.0;  // four times as stiff, with the same damping ratio
+  EXPECT_TRUE(force().isApprox(Vec3(12.0, 0.4, -0.6), 1e-12));
 }
 
 TEST(Hand, TurnsIndependentlyOfTheStepSize) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/testing/allocation_guard.inc.h"
 #include "geometry/pose.h"
@@ -191,7 +190,7 @@ TEST(Novice, MissesEntryAngleAndTarget) {
     EXPECT_LT(entry_error_mm, 9.0) << seed;
     ASSERT_EQ(body.fired.size(), 1u);
     const telemetry::TickSample& fired = body.samples[body.fired[0]];
-    const double angle_deg = angle_between_rad(fired.axis, the_case.path_P.direction()) * 180.0 / std::numbers::pi;
+    const double angle_deg = degrees(angle_between_rad(fired.axis, the_case.path_P.direction()));
     EXPECT_GT(angle_deg, 0.4) << seed;  // a quarter of 2° to 6°
     EXPECT_LT(angle_deg, 6.1) << seed;
     EXPECT_GT((fired.tip_mm - the_case.path_P.b).norm(), 0.8) << seed;  // worse than the expert's worst

@@ -91,8 +91,8 @@ class VirtualPad {
   std::atomic<int> high_{-1};
 };
 
-haptics::DevicePreset gamepad() {
-  haptics::DevicePreset preset;
+stylus::DevicePreset gamepad() {
+  stylus::DevicePreset preset;
   preset.name = "gamepad";
   preset.workspace_radius_mm = 100.0;
   return preset;

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "haptics/closed_loop/rotation.h"
-
 namespace trocar::devices {
 namespace {
 
@@ -50,18 +48,18 @@ TEST(PointerDevice, NeverMovesOrTurnsFasterThanAHand) {
   device.read(0.0);
   device.hold(pointing(Vec3::Zero(), 0.0));
   DeviceHand far = pointing({300.0, 400.0, 0.0}, 0.0);
-  far.X_DS = Pose(haptics::rotation_from_vector({0.0, 3.0, 0.0}), far.X_DS.p());
+  far.X_DS = Pose(rotation_from_vector({0.0, 3.0, 0.0}), far.X_DS.p());
   device.hold(far);
   Pose before = device.read(0.0).X_DS;
   for (int i = 1; i < 3000; ++i) {
     const Pose now = device.read(i * kPointerTick_s).X_DS;
     EXPECT_LE((now.p() - before.p()).norm(), params.max_speed_mm_per_s * kPointerTick_s * (1.0 + 1e-9));
-    EXPECT_LE(haptics::rotation_vector(now.R() * before.R().transpose()).norm(),
+    EXPECT_LE(rotation_vector(now.R() * before.R().transpose()).norm(),
               params.max_turn_rad_per_s * kPointerTick_s + 1e-9);
     before = now;
   }
   EXPECT_LT((before.p() - far.X_DS.p()).norm(), 1e-6);
-  EXPECT_LT(haptics::rotation_vector(before.R() * far.X_DS.R().transpose()).norm(), 1e-6);
+  EXPECT_LT(rotation_vector(before.R() * far.X_DS.R().transpose()).norm(), 1e-6);
 }
 
 TEST(PointerDevice, StaysWhereItIsReleased) {

@@ -81,7 +81,7 @@ TEST(MovePointer, IgnoresNonFiniteInput) {
 
 TEST(PolledPointer, MovesAtEveryReadAndStopsIfItsThreadHangs) {
   std::atomic<bool> is_silent{false};
-  haptics::DevicePreset preset;
+  stylus::DevicePreset preset;
   preset.workspace_radius_mm = kRadius_mm;
   const auto device = PolledPointer::open(preset, std::make_unique<SteadySource>(is_silent));
   ASSERT_TRUE(device.has_value());
@@ -108,7 +108,7 @@ TEST(PolledPointer, MovesAtEveryReadAndStopsIfItsThreadHangs) {
 
 TEST(PolledPointer, ContinuesFromAPlacement) {
   const std::atomic<bool> is_silent{false};
-  haptics::DevicePreset preset;
+  stylus::DevicePreset preset;
   preset.workspace_radius_mm = kRadius_mm;
   const auto device = PolledPointer::open(preset, std::make_unique<SteadySource>(is_silent));
   ASSERT_TRUE(device.has_value());
@@ -131,7 +131,7 @@ TEST(PolledPointer, ContinuesFromAPlacement) {
 
 TEST(PolledPointer, FailsToOpenAndReconnectWithoutAThread) {
   const std::atomic<bool> is_silent{false};
-  haptics::DevicePreset preset;
+  stylus::DevicePreset preset;
   preset.workspace_radius_mm = kRadius_mm;
   const auto device = PolledPointer::open(preset, std::make_unique<SteadySource>(is_silent));
   ASSERT_TRUE(device.has_value());

@@ -18,8 +18,8 @@ using testing::wait_until;
 
 constexpr int kFullCounts = static_cast<int>(kCapFull_counts);
 
-haptics::DevicePreset spacemouse() {
-  haptics::DevicePreset preset;
+stylus::DevicePreset spacemouse() {
+  stylus::DevicePreset preset;
   preset.name = "spacemouse";
   preset.workspace_radius_mm = 50.0;
   return preset;

@@ -4,16 +4,13 @@
 #include <array>
 #include <cmath>
 
-#include "haptics/closed_loop/rotation.h"
-
 namespace trocar::devices {
 
 HandNow hand_at(const DeviceHand& hand, double time_s) noexcept {
   const double late_s = time_s - hand.time_s;
   const double ahead_s = std::clamp(late_s, -kMaxExtrapolation_s, kMaxExtrapolation_s);
   HandNow now;
-  now.X_DS =
-      Pose(haptics::rotation_from_vector(hand.w_D * ahead_s) * hand.X_DS.R(), hand.X_DS.p() + hand.v_D * ahead_s);
+  now.X_DS = Pose(rotation_from_vector(hand.w_D * ahead_s) * hand.X_DS.R(), hand.X_DS.p() + hand.v_D * ahead_s);
   if (std::abs(late_s) > kMaxExtrapolation_s) return now;
   now.v_D = hand.v_D;
   now.w_D = hand.w_D;

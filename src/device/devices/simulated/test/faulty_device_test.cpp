@@ -17,7 +17,7 @@ constexpr double kForEver = std::numeric_limits<double>::infinity();
 /// Moves by 1 mm a read; remembers what was written.
 class Mover final : public HapticDevice {
  public:
-  const haptics::DevicePreset& preset() const noexcept override { return preset_; }
+  const stylus::DevicePreset& preset() const noexcept override { return preset_; }
   std::string name() const override { return "mover"; }
   DeviceReading read(double) noexcept override {
     DeviceReading reading;
@@ -42,7 +42,7 @@ class Mover final : public HapticDevice {
   bool is_gone = false;
 
  private:
-  haptics::DevicePreset preset_;
+  stylus::DevicePreset preset_;
   int reads_ = 0;
 };
 

@@ -6,7 +6,6 @@
 
 #include "core/files/folders.h"
 #include "devices/device_spec.h"
-#include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {
 namespace {
@@ -14,7 +13,7 @@ namespace {
 std::vector<Pose> swing(int count) {
   std::vector<Pose> poses;
   for (int i = 0; i < count; ++i) {
-    poses.emplace_back(haptics::rotation_from_vector({0.1 * i, 0.0, 0.0}), Vec3(2.0 * i, 1.0, 0.0));
+    poses.emplace_back(rotation_from_vector({0.1 * i, 0.0, 0.0}), Vec3(2.0 * i, 1.0, 0.0));
   }
   return poses;
 }
@@ -35,7 +34,7 @@ TEST(ReplayDevice, InterpolatesBetweenPoses) {
   device.read(0.0);
   const DeviceReading reading = device.read(0.0125);
   EXPECT_NEAR(reading.X_DS.p().x(), 2.5, 1e-9);
-  EXPECT_NEAR(haptics::rotation_vector(reading.X_DS.R()).x(), 0.125, 1e-9);
+  EXPECT_NEAR(rotation_vector(reading.X_DS.R()).x(), 0.125, 1e-9);
 }
 
 TEST(ReplayDevice, HoldsTheLastPoseDespiteWrites) {

@@ -3,7 +3,6 @@
 #include "core/files/folders.h"
 #include "core/files/output_file.h"
 #include "devices/simulated/replay_device.h"
-#include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {
 namespace {
@@ -26,7 +25,7 @@ TEST_F(ReplayFile, RoundTripsItsPoses) {
   RecordedMotion motion;
   motion.rate_hz = 500.0;
   for (int i = 0; i < 3001; ++i)
-    motion.poses.emplace_back(haptics::rotation_from_vector({0.001 * i, -0.3, 1.0}), Vec3(i / 3.0, 1e-7 * i, -1.0 / 7));
+    motion.poses.emplace_back(rotation_from_vector({0.001 * i, -0.3, 1.0}), Vec3(i / 3.0, 1e-7 * i, -1.0 / 7));
   ASSERT_TRUE(write_motion(motion, folder_ / "motion.csv"));
   const auto read = read_motion(folder_ / "motion.csv");
   ASSERT_TRUE(read) << read.error().text();

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "devices/test/server_periods.h"
-#include "haptics/closed_loop/rotation.h"
 
 namespace trocar::devices {
 namespace {
@@ -13,7 +12,7 @@ using namespace trocar::testing;
 
 TEST(SimulatedHand, YieldsToAForceLikeTheHandSpring) {
   for (const double point_mm : {0.0, 160.0}) {
-    const haptics::DevicePreset preset = preset_of("premium");
+    const stylus::DevicePreset preset = preset_of("premium");
     Bench bench(preset);
     DeviceHand hand = holding(Pose(), bench.time_s);
     hand.point_mm = point_mm;
@@ -32,7 +31,7 @@ TEST(SimulatedHand, YieldsToAForceLikeTheHandSpring) {
 }
 
 TEST(SimulatedHand, HeldAtTheTipSwingsAboutIt) {
-  haptics::DevicePreset preset = preset_of("premium");
+  stylus::DevicePreset preset = preset_of("premium");
   preset.capability.stylus_weight_n = 0.0;
   Bench bench(preset);
   DeviceHand hand = holding(Pose(), bench.time_s);
@@ -45,7 +44,7 @@ TEST(SimulatedHand, HeldAtTheTipSwingsAboutIt) {
   // 0.5 N across at S: 50 N mm about the tip on 300 N mm/rad, and the tip itself gives way by 0.5 N on 0.6 N/mm.
   const Pose X_DS = bench.device.X_DS();
   const Vec3 tip = X_DS * Vec3(0.0, 0.0, 100.0);
-  const double angle = haptics::rotation_vector(X_DS.R()).norm();
+  const double angle = rotation_vector(X_DS.R()).norm();
   EXPECT_NEAR(angle, 50.0 / 300.0, 0.01);
   EXPECT_NEAR(tip.x(), 0.5 / 0.6, 0.1);
   EXPECT_GT(X_DS.p().x(), 10.0);
@@ -53,7 +52,7 @@ TEST(SimulatedHand, HeldAtTheTipSwingsAboutIt) {
 
 TEST(SimulatedHand, ChangingTheGripMovesNothing) {
   Bench bench(preset_of("premium"));
-  const Pose X_DS(haptics::rotation_from_vector({0.2, -0.7, 0.1}), {5.0, 6.0, 7.0});
+  const Pose X_DS(rotation_from_vector({0.2, -0.7, 0.1}), {5.0, 6.0, 7.0});
   DeviceHand hand = holding(X_DS, bench.time_s);
   hand.v_D = Vec3(50.0, -20.0, 10.0);
   hand.w_D = Vec3(1.0, 2.0, -3.0);
@@ -99,7 +98,7 @@ TEST(SimulatedHand, ExtrapolatesByVelocityBrieflyThenStops) {
 
 TEST(SimulatedHand, RigidHandFollowsExactlyAgainstForces) {
   Bench bench(ideal());
-  const Pose X_DS(haptics::rotation_from_vector({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
+  const Pose X_DS(rotation_from_vector({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0});
   DeviceHand hand = holding(X_DS, bench.time_s);
   hand.is_rigid = true;
   for (int i = 0; i < 50; ++i) bench.period(hand, {{30.0, 30.0, 0.0}, {400.0, 0.0, 0.0}});

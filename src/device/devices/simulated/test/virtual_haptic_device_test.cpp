@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 #include "devices/test/server_periods.h"
-#include "haptics/closed_loop/rotation.h"
+#include "haptics/scene_options.h"
 #include "haptics/test/layered_patient.h"
 #include "haptics/tick.h"
 
@@ -19,17 +19,17 @@ using namespace trocar::testing;
 class ReleasedInAir : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ReleasedInAir, StaysPutWithWeightCompensation) {
-  const haptics::DevicePreset preset = preset_of(GetParam());
+  const stylus::DevicePreset preset = preset_of(GetParam());
   Bench bench(preset);
-  const Pose X_DS(haptics::rotation_from_vector({0.3, 2.0, -0.4}), {10.0, -20.0, 30.0});
+  const Pose X_DS(rotation_from_vector({0.3, 2.0, -0.4}), {10.0, -20.0, 30.0});
   DeviceReading reading = bench.period(placed_at(X_DS), {});
   for (int i = 0; i < 5000; ++i) reading = bench.period(DeviceHand{}, weight_compensation(preset, reading.X_DS));
   EXPECT_LT((bench.device.X_DS().p() - X_DS.p()).norm(), 0.5);  // what it falls before the first wrench acts
-  EXPECT_LT(haptics::rotation_vector(bench.device.X_DS().R() * X_DS.R().transpose()).norm(), 0.02);
+  EXPECT_LT(rotation_vector(bench.device.X_DS().R() * X_DS.R().transpose()).norm(), 0.02);
 }
 
 TEST_P(ReleasedInAir, SinksWithoutCompensation) {
-  const haptics::DevicePreset preset = preset_of(GetParam());
+  const stylus::DevicePreset preset = preset_of(GetParam());
   Bench bench(preset);
   bench.period(placed_at(Pose()), {});
   for (int i = 0; i < 3000; ++i) bench.period(DeviceHand{}, {});
@@ -41,7 +41,7 @@ TEST_P(ReleasedInAir, SinksWithoutCompensation) {
 INSTANTIATE_TEST_SUITE_P(Presets, ReleasedInAir, ::testing::Values("premium", "omni", "omega7", "inverse3", "falcon"));
 
 TEST(ReleasedStylus, TickOfAServerCarriesTheStylus) {
-  const haptics::DevicePreset preset = preset_of("premium");
+  const stylus::DevicePreset preset = preset_of("premium");
   for (const bool is_carried : {true, false}) {
     haptics::HapticOptions options;
     options.has_weight_compensation = is_carried;
@@ -53,8 +53,7 @@ TEST(ReleasedStylus, TickOfAServerCarriesTheStylus) {
     // Down in D is down in P, and the needle is far above the skin.
     scene.X_PW = Pose(rotation_between(-Vec3::UnitZ(), scene.gravity_P), -800.0 * scene.gravity_P);
     Bench bench(preset);
-    DeviceReading reading =
-        bench.period(placed_at(Pose(haptics::rotation_from_vector({2.0, 0.5, 0.0}), Vec3::Zero())), {});
+    DeviceReading reading = bench.period(placed_at(Pose(rotation_from_vector({2.0, 0.5, 0.0}), Vec3::Zero())), {});
     haptics::HapticState state;
     for (int i = 0; i < 2000; ++i) {
       haptics::HapticInput input;
@@ -73,7 +72,7 @@ TEST(ReleasedStylus, TickOfAServerCarriesTheStylus) {
 }
 
 TEST(VirtualHapticDevice, FallsAccordingToItsWeightAndMass) {
-  const haptics::DevicePreset preset = ideal();
+  const stylus::DevicePreset preset = ideal();
   Bench bench(preset, without_friction());
   bench.period(placed_at(Pose::translation({0.0, 0.0, 50.0})), {});
   for (int i = 0; i < 100; ++i) bench.period(std::nullopt, {});
@@ -93,7 +92,7 @@ TEST(VirtualHapticDevice, AppliesAWrenchAfterItsDelay) {
   for (const int delay : {0, 1, 3}) {
     SimulatedDeviceParams params = without_friction();
     params.force_delay = delay;
-    haptics::DevicePreset preset = ideal();
+    stylus::DevicePreset preset = ideal();
     preset.capability.stylus_weight_n = 0.0;
     Bench bench(preset, params);
     bench.period(placed_at(Pose()), {});
@@ -109,7 +108,7 @@ TEST(VirtualHapticDevice, AppliesAWrenchAfterItsDelay) {
 }
 
 TEST(VirtualHapticDevice, LastWrenchActsUntilAnotherIsWritten) {
-  haptics::DevicePreset preset = ideal();
+  stylus::DevicePreset preset = ideal();
   preset.capability.stylus_weight_n = 0.0;
   Bench bench(preset, without_friction());
   bench.period(placed_at(Pose()), {});
@@ -136,11 +135,11 @@ TEST(VirtualHapticDevice, DelaysReadings) {
 }
 
 TEST(VirtualHapticDevice, QuantisesPositionsAndAnglesToEncoderCounts) {
-  const haptics::DevicePreset preset = preset_of("omni");
+  const stylus::DevicePreset preset = preset_of("omni");
   Bench bench(preset);
   Random random(5);
   for (int i = 0; i < 200; ++i) {
-    DeviceHand hand = placed_at(Pose(haptics::rotation_from_vector({random.uniform(-1, 1), random.uniform(-1, 1), 0.2}),
+    DeviceHand hand = placed_at(Pose(rotation_from_vector({random.uniform(-1, 1), random.uniform(-1, 1), 0.2}),
                                      {random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-50, 50)}));
     hand.time_s = bench.time_s;
     bench.period(hand, {});
@@ -150,14 +149,14 @@ TEST(VirtualHapticDevice, QuantisesPositionsAndAnglesToEncoderCounts) {
     }
     const Pose X_DS = bench.device.X_DS();
     EXPECT_LE((reading.X_DS.p() - X_DS.p()).cwiseAbs().maxCoeff(), 0.5 * preset.encoder.count_mm + 1e-9);
-    EXPECT_LE(haptics::rotation_vector(reading.X_DS.R() * X_DS.R().transpose()).norm(),
+    EXPECT_LE(rotation_vector(reading.X_DS.R() * X_DS.R().transpose()).norm(),
               0.5 * std::sqrt(3.0) * preset.encoder.count_rad + 1e-9);
   }
 }
 
 TEST(VirtualHapticDevice, ReportsIdentityRotationWithoutAngleSensors) {
   Bench bench(preset_of("falcon"));
-  bench.period(placed_at(Pose(haptics::rotation_from_vector({0.5, 0.5, 0.0}), {1.0, 2.0, 3.0})), {});
+  bench.period(placed_at(Pose(rotation_from_vector({0.5, 0.5, 0.0}), {1.0, 2.0, 3.0})), {});
   const DeviceReading reading = bench.period(std::nullopt, {});
   EXPECT_EQ(reading.X_DS.R(), Mat3::Identity().eval());
   EXPECT_NEAR(reading.X_DS.p().x(), 1.0, 0.1);
@@ -165,18 +164,18 @@ TEST(VirtualHapticDevice, ReportsIdentityRotationWithoutAngleSensors) {
 
 TEST(VirtualHapticDevice, WithoutTorqueMotorsIgnoresTorque) {
   for (const char* name : {"omni", "premium"}) {
-    const haptics::DevicePreset preset = preset_of(name);
+    const stylus::DevicePreset preset = preset_of(name);
     Bench bench(preset);
     bench.period(placed_at(Pose()), {});
     const Wrench twist{Vec3(0.0, 0.0, preset.capability.stylus_weight_n), {0.0, 0.0, 100.0}};
     for (int i = 0; i < 50; ++i) bench.period(DeviceHand{}, twist);
-    const double turned = haptics::rotation_vector(bench.device.X_DS().R()).norm();
+    const double turned = rotation_vector(bench.device.X_DS().R()).norm();
     EXPECT_EQ(turned > 0.1, preset.has_torque()) << name << " " << turned;
   }
 }
 
 TEST(VirtualHapticDevice, LimitsMotorsToTheirPeaks) {
-  haptics::DevicePreset preset = ideal();
+  stylus::DevicePreset preset = ideal();
   preset.capability.stylus_weight_n = 0.0;
   for (const double wanted_n : {10.0, 37.5, 100.0, 15000.0}) {
     Bench bench(preset, without_friction());
@@ -189,7 +188,7 @@ TEST(VirtualHapticDevice, LimitsMotorsToTheirPeaks) {
 }
 
 TEST(VirtualHapticDevice, DryFrictionHoldsUntilItIsOvercome) {
-  haptics::DevicePreset preset = preset_of("omni");
+  stylus::DevicePreset preset = preset_of("omni");
   preset.capability.stylus_weight_n = 0.0;
   preset.viscosity_ns_per_mm = 0.0;
   const auto pushed_mm = [&](double force_n) {
@@ -204,7 +203,7 @@ TEST(VirtualHapticDevice, DryFrictionHoldsUntilItIsOvercome) {
 }
 
 TEST(VirtualHapticDevice, DryFrictionStopsAMotionByItsWork) {
-  haptics::DevicePreset preset = preset_of("omni");
+  stylus::DevicePreset preset = preset_of("omni");
   preset.capability.stylus_weight_n = 0.0;
   preset.viscosity_ns_per_mm = 0.0;
   Bench bench(preset);
@@ -223,7 +222,7 @@ TEST(VirtualHapticDevice, DryFrictionStopsAMotionByItsWork) {
 }
 
 TEST(VirtualHapticDevice, ViscosityLimitsTheSpeed) {
-  haptics::DevicePreset preset = ideal();
+  stylus::DevicePreset preset = ideal();
   preset.capability.stylus_weight_n = 0.0;
   preset.viscosity_ns_per_mm = 0.005;  // 0.5 N: 100 mm/s, reached with 20 ms
   preset.workspace_radius_mm = 1000.0;
@@ -234,7 +233,7 @@ TEST(VirtualHapticDevice, ViscosityLimitsTheSpeed) {
 }
 
 TEST(VirtualHapticDevice, WorkspaceEndsInASoftWall) {
-  const haptics::DevicePreset preset = preset_of("premium");
+  const stylus::DevicePreset preset = preset_of("premium");
   Bench bench(preset);
   double farthest_mm = 0.0;
   for (int i = 0; i < 3000; ++i) {

@@ -53,7 +53,7 @@ class ServoExchange {
   /// For the real-time thread. Limits force and torque to the peaks of the device; a peak torque of zero removes the
   /// torque. Returns false if the wrench is invalid (zero is sent instead), the vendor's safety functions refuse
   /// forces, or the device is disconnected.
-  bool write(const Wrench& wrench_D, const haptics::DeviceCapability& capability) noexcept {
+  bool write(const Wrench& wrench_D, const stylus::DeviceCapability& capability) noexcept {
     const bool is_taken = is_valid(wrench_D);
     Wrench sent;
     if (is_taken) {

@@ -27,8 +27,8 @@ using testing::wait_until;
 constexpr double kRightAngle_rad = 1.5707963267948966;
 constexpr double kTolerance_mm = 1e-6;  // decimal text there and back
 
-haptics::DevicePreset inverse3() {
-  haptics::DevicePreset preset;
+stylus::DevicePreset inverse3() {
+  stylus::DevicePreset preset;
   preset.name = "inverse3";
   preset.actuated_dof = 3;
   preset.capability.peak_force_n = 8.0;

@@ -179,7 +179,7 @@ TEST_F(OpenHaptics, DeviceLimitsTightenThePreset) {
   vendor->set_model("PHANTOM Premium 1.5 6DOF", 6);
   vendor->set_nominal(8.5, 1.4, 0.25, 188.0);
   open_or_fail();
-  const haptics::DevicePreset& preset = device->preset();
+  const stylus::DevicePreset& preset = device->preset();
   EXPECT_DOUBLE_EQ(preset.capability.peak_force_n, 8.5);
   EXPECT_DOUBLE_EQ(preset.continuous_force_n.value(), 1.4);
   EXPECT_DOUBLE_EQ(preset.capability.max_stiffness_n_per_mm, 0.25);

@@ -21,8 +21,8 @@
 namespace trocar::link::detail {
 
 /// The listening socket of a server and its connections, used by one thread. Limits for untrusted peers: connections,
-/// accepts per second, bytes and messages of each connection (link/limits.h). At most kMostUnauthenticated connections
-/// have not sent Hello: a new one replaces the oldest of them.
+/// accepts per second, bytes and messages of each connection (link/messages.h). At most kMostUnauthenticated
+/// connections have not sent Hello: a new one replaces the oldest of them.
 class ServerConnections {
  public:
   /// Errors: address in use, no such folder, too few file descriptors.

@@ -8,7 +8,7 @@
 
 #include "config/toml.h"
 
-// HarmlessWords: which texts are harmless. Its files are read by load_harmless_words.cpp.
+// HarmlessWords: which texts are harmless.
 
 namespace trocar::dicom::detail {
 

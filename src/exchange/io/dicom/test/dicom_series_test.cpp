@@ -13,8 +13,6 @@ using detail::DicomSlice;
 using detail::order_slices;
 using testing::test_data;
 
-constexpr double kDegree = M_PI / 180.0;
-
 /// Headers of a series: `count` slices a step apart along the slices' normal, leaning by `tilt_deg`.
 std::vector<DicomSlice> series(int count, double step_mm, double tilt_deg = 0.0, const Mat3& R = Mat3::Identity()) {
   std::vector<DicomSlice> slices;
@@ -24,7 +22,7 @@ std::vector<DicomSlice> series(int count, double step_mm, double tilt_deg = 0.0,
     slice.series_uid = "1.2.3";
     slice.columns = 6;
     slice.rows = 4;
-    slice.position_P = Vec3(10, 20, 30) + R * Vec3(0, std::tan(tilt_deg * kDegree), 1) * (n * step_mm);
+    slice.position_P = Vec3(10, 20, 30) + R * Vec3(0, std::tan(tilt_deg * kRadPerDeg), 1) * (n * step_mm);
     slice.directions_P = {R.col(0), R.col(1)};
     slice.spacing_mm = {0.5, 0.75};
     slices.push_back(slice);

@@ -48,7 +48,7 @@ TEST(Scanner, GantryTiltIsStraightenedWithAWarning) {
   CtSeries series;
   series.rows = 30;
   // As scanners write it: the slices are tilted by 20 degrees about x, the table moves along z.
-  series.R_PV = Eigen::AngleAxisd(20.0 * M_PI / 180.0, Vec3::UnitX()).toRotationMatrix();
+  series.R_PV = Eigen::AngleAxisd(radians(20.0), Vec3::UnitX()).toRotationMatrix();
   write_slices(folder.path(), series, origins_at({0, 3, 6, 9, 12, 15}), linear_hu);
   const auto scan = read_ct_scan(folder.path());
   ASSERT_TRUE(scan) << scan.error().text();

@@ -65,7 +65,7 @@ struct SourceCounts {
   double ct_voxel_ml = 0.0;
 };
 
-SourceCounts count_source(const anatomy::LabelSource& source, const volume::GridGeometry& ct) {
+SourceCounts count_source(const patient_builder::LabelSource& source, const volume::GridGeometry& ct) {
   SourceCounts counts;
   counts.in_file = count_voxels(source.labels);
   counts.on_ct = counts.in_file;
@@ -99,7 +99,7 @@ void warn_of_loss(const std::string& name, const SourceCounts& counts, std::size
 }
 
 bool is_structure(const std::string& name, const LabelMap& map) {
-  return name != anatomy::kIgnoredStructure && !map.structures().is_background(name) &&
+  return name != patient_builder::kIgnoredStructure && !map.structures().is_background(name) &&
          !map.structures().is_region(name);
 }
 
@@ -111,8 +111,8 @@ struct Found {
   std::vector<std::string> empty_masks;
 };
 
-void check_source(anatomy::LabelSource& source, const LabelMap& map, const volume::GridGeometry& ct, Found& found,
-                  std::vector<std::string>& warnings) {
+void check_source(patient_builder::LabelSource& source, const LabelMap& map, const volume::GridGeometry& ct,
+                  Found& found, std::vector<std::string>& warnings) {
   const SourceCounts counts = count_source(source, ct);
   const std::string file = std::filesystem::path(source.file).filename().string();
   const bool is_mask = !source.is_described && source.names.size() == 1;
@@ -137,24 +137,24 @@ void check_source(anatomy::LabelSource& source, const LabelMap& map, const volum
 
 }  // namespace
 
-void leave_out_unused(std::vector<anatomy::LabelSource>& sources, const LabelMap& map,
+void leave_out_unused(std::vector<patient_builder::LabelSource>& sources, const LabelMap& map,
                       std::vector<std::string>& warnings) {
   std::set<std::string> left_out;
-  for (anatomy::LabelSource& source : sources)
+  for (patient_builder::LabelSource& source : sources)
     for (auto& [value, name] : source.names)
       if (map.is_unused(name)) {
         left_out.insert(name);
-        name = anatomy::kIgnoredStructure;
+        name = patient_builder::kIgnoredStructure;
       }
   if (!left_out.empty())
     warnings.push_back(fmt::format("structures that no task needs were left out: {}", fmt::join(left_out, ", ")));
 }
 
-Status check_voxels(std::vector<anatomy::LabelSource>& sources, const LabelMap& map, const volume::GridGeometry& ct,
-                    const std::string& where, std::vector<std::string>& warnings) {
+Status check_voxels(std::vector<patient_builder::LabelSource>& sources, const LabelMap& map,
+                    const volume::GridGeometry& ct, const std::string& where, std::vector<std::string>& warnings) {
   Found found;
   std::vector<std::string> told;
-  for (anatomy::LabelSource& source : sources) check_source(source, map, ct, found, told);
+  for (patient_builder::LabelSource& source : sources) check_source(source, map, ct, found, told);
   if (found.structures > 0 && found.in_file == 0)
     return fail(fmt::format("the labels are all empty: none of {} structures has a voxel", found.structures), where,
                 "check that the segmentation is not blank");
@@ -166,7 +166,7 @@ Status check_voxels(std::vector<anatomy::LabelSource>& sources, const LabelMap& 
   if (!found.empty_masks.empty())
     warnings.push_back(fmt::format("{} of {} structures are empty masks and were left out: {}",
                                    found.empty_masks.size(), found.structures, fmt::join(found.empty_masks, ", ")));
-  std::erase_if(sources, [](const anatomy::LabelSource& source) {
+  std::erase_if(sources, [](const patient_builder::LabelSource& source) {
     return source.names.empty() && std::all_of(source.labels.voxels.begin(), source.labels.voxels.end(),
                                                [](std::uint8_t voxel) { return voxel == 0; });
   });

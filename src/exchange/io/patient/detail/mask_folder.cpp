@@ -14,7 +14,7 @@ namespace trocar::io::detail {
 namespace {
 
 /// Merges a mask into a source on the same grid if they do not overlap. A hundred such masks take the memory of one.
-bool try_join(const anatomy::LabelSource& mask, anatomy::LabelSource& into) {
+bool try_join(const patient_builder::LabelSource& mask, patient_builder::LabelSource& into) {
   const auto value = static_cast<std::uint8_t>(into.names.size() + 1);
   if (value == 0 || mask.names.size() != 1 || !mask.labels.geometry.matches(into.labels.geometry)) return false;
   const std::vector<std::uint8_t>& from = mask.labels.voxels;
@@ -49,8 +49,8 @@ volume::LabelGrid empty_over(const volume::GridGeometry& g) {
   return volume::LabelGrid(coarse);
 }
 
-void MaskFolder::add(anatomy::LabelSource source) {
-  if (source.names.size() == 1 && source.names.front().second == anatomy::kIgnoredStructure) return;
+void MaskFolder::add(patient_builder::LabelSource source) {
+  if (source.names.size() == 1 && source.names.front().second == patient_builder::kIgnoredStructure) return;
   if (source.names.size() != 1) {
     others_.push_back(std::move(source));
     return;
@@ -60,14 +60,15 @@ void MaskFolder::add(anatomy::LabelSource source) {
     others_.push_back(std::move(source));
     return;
   }
-  if (std::any_of(joined_.begin(), joined_.end(), [&](anatomy::LabelSource& into) { return try_join(source, into); }))
+  if (std::any_of(joined_.begin(), joined_.end(),
+                  [&](patient_builder::LabelSource& into) { return try_join(source, into); }))
     return;
   for (std::uint8_t& voxel : source.labels.voxels) voxel = voxel != 0 ? 1 : 0;
   source.names.front().first = 1;
   joined_.push_back(std::move(source));
 }
 
-std::vector<anatomy::LabelSource> MaskFolder::take() {
+std::vector<patient_builder::LabelSource> MaskFolder::take() {
   std::move(others_.begin(), others_.end(), std::back_inserter(joined_));
   return std::move(joined_);
 }
@@ -82,7 +83,7 @@ DescribedSegment description_of(const dicom::Segment& segment) {
 /// Name of a structure. `stem` is that of the file if it holds only this structure.
 std::string name_of(const dicom::Segment& segment, const LabelMap& map, const std::string& stem) {
   const std::string name = map.name_of(description_of(segment));
-  if (name == anatomy::kIgnoredStructure || map.is_known(name) || !map.is_known(stem)) return name;
+  if (name == patient_builder::kIgnoredStructure || map.is_known(name) || !map.is_known(stem)) return name;
   return map.name_of(stem);
 }
 
@@ -108,11 +109,11 @@ Result<std::vector<fs::path>> find_dicom_labels(const fs::path& path) {
   return found;
 }
 
-Result<std::vector<anatomy::LabelSource>> read_dicom_labels(const fs::path& path, const LabelMap& map,
-                                                            const dicom::CtReference& ct,
-                                                            std::vector<std::string>& warnings) {
+Result<std::vector<patient_builder::LabelSource>> read_dicom_labels(const fs::path& path, const LabelMap& map,
+                                                                    const dicom::CtReference& ct,
+                                                                    std::vector<std::string>& warnings) {
   const auto is_wanted = [&](const dicom::Segment& segment) {
-    return name_of(segment, map, {}) != anatomy::kIgnoredStructure;
+    return name_of(segment, map, {}) != patient_builder::kIgnoredStructure;
   };
   TROCAR_TRY(dicom::Segmentation read, dicom::read_segmentation(path, ct, is_wanted, decode_frame));
   for (const std::string& warning : read.warnings) warnings.push_back(path.filename().string() + ": " + warning);
@@ -121,10 +122,10 @@ Result<std::vector<anatomy::LabelSource>> read_dicom_labels(const fs::path& path
       warnings.push_back(path.filename().string() + ": " + contradiction);
 
   const std::string stem = read.segments.size() == 1 ? path.stem().string() : std::string();
-  std::vector<anatomy::LabelSource> sources;
+  std::vector<patient_builder::LabelSource> sources;
   std::vector<bool> has_voxels(read.segments.size(), false);
   for (dicom::SegmentVolume& volume : read.volumes) {
-    anatomy::LabelSource source{path.string(), std::move(volume.labels), {}, true, {}};
+    patient_builder::LabelSource source{path.string(), std::move(volume.labels), {}, true, {}};
     for (std::size_t n = 0; n < volume.segments.size(); ++n) {
       has_voxels[volume.segments[n]] = true;
       source.names.emplace_back(static_cast<int>(n + 1), name_of(read.segments[volume.segments[n]], map, stem));

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "anatomy/build_patient.h"
 #include "core/result.h"
 #include "dicom/segmentation/segmentation.h"
 #include "io/patient/label_map.h"
+#include "patient_builder/build_patient.h"
 
 namespace trocar::io::detail {
 
@@ -20,12 +20,12 @@ volume::LabelGrid empty_over(const volume::GridGeometry& geometry);
 /// Collects the masks of a folder. Masks that do not overlap share one source.
 class MaskFolder {
  public:
-  void add(anatomy::LabelSource source);
-  std::vector<anatomy::LabelSource> take();
+  void add(patient_builder::LabelSource source);
+  std::vector<patient_builder::LabelSource> take();
 
  private:
-  std::vector<anatomy::LabelSource> joined_;
-  std::vector<anatomy::LabelSource> others_;  ///< Empty masks and files of several labels.
+  std::vector<patient_builder::LabelSource> joined_;
+  std::vector<patient_builder::LabelSource> others_;  ///< Empty masks and files of several labels.
 };
 
 /// The DICOM segmentations and structure sets that a path names: the file itself, or those in a folder and its
@@ -36,8 +36,8 @@ Result<std::vector<std::filesystem::path>> find_dicom_labels(const std::filesyst
 /// (LabelMap::name_of); a single structure without a known name is named after its file if that is a known one. Ignored
 /// structures are left out; empty ones have a coarse grid over the CT. Warnings name the file. Errors: those of
 /// dicom::read_segmentation.
-Result<std::vector<anatomy::LabelSource>> read_dicom_labels(const std::filesystem::path& path, const LabelMap& map,
-                                                            const dicom::CtReference& ct,
-                                                            std::vector<std::string>& warnings);
+Result<std::vector<patient_builder::LabelSource>> read_dicom_labels(const std::filesystem::path& path,
+                                                                    const LabelMap& map, const dicom::CtReference& ct,
+                                                                    std::vector<std::string>& warnings);
 
 }  // namespace trocar::io::detail

@@ -68,11 +68,11 @@ std::optional<int> value_in_corners(const volume::LabelGrid& labels) {
 
 /// What surrounds the structures must be 0 or have no name: numbers that were all raised by one, or an inverted mask,
 /// make an organ of it.
-Status check_background(const anatomy::LabelSource& source, const LabelMap& map) {
+Status check_background(const patient_builder::LabelSource& source, const LabelMap& map) {
   const auto& known = map.structures();
   const auto surrounds = [&](const std::string& name) {
     const anatomy::KnownStructure* structure = known.find(name);
-    return name == anatomy::kIgnoredStructure || known.is_background(name) || known.is_region(name) ||
+    return name == patient_builder::kIgnoredStructure || known.is_background(name) || known.is_region(name) ||
            (structure != nullptr && structure->tissue == "skin");
   };
   const bool any_outside = std::ranges::find(source.labels.voxels, 0) != source.labels.voxels.end() ||
@@ -111,7 +111,7 @@ Result<Names> own_names(const RawVolume& raw, const std::vector<int>& values, co
   return std::ranges::any_of(values, [&](int value) { return table.contains(value); }) ? names : Names{};
 }
 
-void tell_readings(const anatomy::LabelSource& source, const std::vector<int>& values,
+void tell_readings(const patient_builder::LabelSource& source, const std::vector<int>& values,
                    const std::filesystem::path& path, const LabelMap& map, Place place,
                    std::vector<std::string>& warnings) {
   const std::string file = path.filename().string();
@@ -129,11 +129,11 @@ void tell_readings(const anatomy::LabelSource& source, const std::vector<int>& v
 
 }  // namespace
 
-Result<anatomy::LabelSource> name_labels(const RawVolume& raw, const std::filesystem::path& path, const LabelMap& map,
-                                         Place place, std::vector<std::string>& warnings) {
+Result<patient_builder::LabelSource> name_labels(const RawVolume& raw, const std::filesystem::path& path,
+                                                 const LabelMap& map, Place place, std::vector<std::string>& warnings) {
   const std::string where = path.string();
   TROCAR_TRY(volume::LabelGrid labels, to_grid<std::uint8_t>(raw, where, convert_voxels));
-  anatomy::LabelSource source{where, std::move(labels), {}, false, {}, {}};
+  patient_builder::LabelSource source{where, std::move(labels), {}, false, {}, {}};
   const std::vector<int> values = values_in(source.labels);
   const std::string stem = map.name_in_file_name(image_stem(path));
   const bool is_named_mask = values.size() == 1 && map.is_known(map.name_of(stem));
@@ -145,7 +145,7 @@ Result<anatomy::LabelSource> name_labels(const RawVolume& raw, const std::filesy
     TROCAR_TRY_STATUS(check_background(source, map));
     source.other_readings = map.other_readings(source.names);
     // The map that is taken without a choice does not win over the table.
-    for (anatomy::OtherReading& other : source.other_readings)
+    for (patient_builder::OtherReading& other : source.other_readings)
       if (other.advice.empty() && other.label_map == kTotalSegmentator)
         other.advice = fmt::format("give a TOML file with base = \"{}\" by --label-map", kTotalSegmentator);
     source.numbers_of = map.is_chosen() ? map.base_words() : "the label table in its header";

@@ -139,16 +139,16 @@ Result<std::vector<Segment3dSlicer>> segments_in(const RawVolume& raw, const fs:
 }
 
 /// One source per layer: overlapping segments are in different layers.
-Result<std::vector<anatomy::LabelSource>> read_segments(const RawVolume& raw,
-                                                        const std::vector<Segment3dSlicer>& segments,
-                                                        const LabelMap& map, const fs::path& path,
-                                                        std::vector<std::string>& warnings) {
+Result<std::vector<patient_builder::LabelSource>> read_segments(const RawVolume& raw,
+                                                                const std::vector<Segment3dSlicer>& segments,
+                                                                const LabelMap& map, const fs::path& path,
+                                                                std::vector<std::string>& warnings) {
   for (const Segment3dSlicer& segment : segments)
     if (const std::string contradiction = map.contradiction_in(segment.description); !contradiction.empty())
       warnings.push_back(path.filename().string() + ": " + contradiction);
   const auto count = static_cast<std::size_t>(raw.components);
   const std::size_t voxel_bytes = bytes_per_voxel(raw.type);
-  std::vector<anatomy::LabelSource> sources;
+  std::vector<patient_builder::LabelSource> sources;
   for (std::size_t layer = 0; layer < count; ++layer) {
     RawVolume single;
     single.geometry = raw.geometry;
@@ -159,7 +159,7 @@ Result<std::vector<anatomy::LabelSource>> read_segments(const RawVolume& raw,
     for (std::size_t n = 0; n < raw.geometry.voxel_count(); ++n)
       std::copy_n(raw.bytes.get() + (n * count + layer) * voxel_bytes, voxel_bytes,
                   single.bytes.get() + n * voxel_bytes);
-    anatomy::LabelSource source{path.string(), {}, {}, true, {}};
+    patient_builder::LabelSource source{path.string(), {}, {}, true, {}};
     TROCAR_TRY(source.labels, to_grid<std::uint8_t>(single, path.string(), convert_voxels));
     for (const Segment3dSlicer& segment : segments)
       if (segment.layer == static_cast<int>(layer))
@@ -175,11 +175,11 @@ Result<std::vector<anatomy::LabelSource>> read_segments(const RawVolume& raw,
 
 }  // namespace
 
-Result<std::vector<anatomy::LabelSource>> read_slicer_segments(const RawVolume& raw, const LabelMap& map,
-                                                               const fs::path& path,
-                                                               std::vector<std::string>& warnings) {
+Result<std::vector<patient_builder::LabelSource>> read_slicer_segments(const RawVolume& raw, const LabelMap& map,
+                                                                       const fs::path& path,
+                                                                       std::vector<std::string>& warnings) {
   TROCAR_TRY(const std::vector<Segment3dSlicer> segments, segments_in(raw, path));
-  if (segments.empty()) return std::vector<anatomy::LabelSource>{};
+  if (segments.empty()) return std::vector<patient_builder::LabelSource>{};
   return read_segments(raw, segments, map, path, warnings);
 }
 

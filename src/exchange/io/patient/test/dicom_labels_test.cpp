@@ -25,9 +25,9 @@ dicom::CtReference reference_of(const CtScan& scan) {
 
 /// Voxels of each structure on the grid of the CT.
 std::map<std::string, std::size_t> voxels_on(const volume::GridGeometry& ct,
-                                             const std::vector<anatomy::LabelSource>& sources) {
+                                             const std::vector<patient_builder::LabelSource>& sources) {
   std::map<std::string, std::size_t> voxels;
-  for (const anatomy::LabelSource& source : sources) {
+  for (const patient_builder::LabelSource& source : sources) {
     const volume::LabelGrid labels = volume::resample_nearest(source.labels, ct, 0);
     for (const auto& [value, name] : source.names)
       voxels[name] += static_cast<std::size_t>(std::count(labels.voxels.begin(), labels.voxels.end(), value));
@@ -218,10 +218,10 @@ class RealSegmentation : public ::testing::Test {
     return mask;
   }
   /// The same of a structure of the sources, whose name the map does not change.
-  static volume::MaskGrid mask_of(const std::vector<anatomy::LabelSource>& sources, const std::string& wanted,
+  static volume::MaskGrid mask_of(const std::vector<patient_builder::LabelSource>& sources, const std::string& wanted,
                                   const volume::GridGeometry& grid) {
     volume::MaskGrid mask(grid);
-    for (const anatomy::LabelSource& source : sources) {
+    for (const patient_builder::LabelSource& source : sources) {
       const volume::LabelGrid labels = volume::resample_nearest(source.labels, grid, 0);
       for (const auto& [value, name] : source.names)
         for (std::size_t n = 0; name == wanted && n < labels.voxels.size(); ++n)
@@ -229,7 +229,8 @@ class RealSegmentation : public ::testing::Test {
     }
     return mask;
   }
-  std::vector<anatomy::LabelSource> read(const fs::path& ct_folder, const fs::path& seg, dicom::CtReference& ct) {
+  std::vector<patient_builder::LabelSource> read(const fs::path& ct_folder, const fs::path& seg,
+                                                 dicom::CtReference& ct) {
     const auto scan = read_ct_scan(ct_folder);
     EXPECT_TRUE(scan) << scan.error().text();
     if (!scan) return {};
@@ -240,7 +241,7 @@ class RealSegmentation : public ::testing::Test {
     testing::write_bytes(folder / "map.toml", "[labels]\nLIGHT_BLUE = \"LIGHT_BLUE\"\nPURPLE = \"PURPLE\"\n");
     auto sources = read_label_sources({seg}, (folder / "map.toml").string(), ct, warnings);
     EXPECT_TRUE(sources) << sources.error().text();
-    return sources ? *std::move(sources) : std::vector<anatomy::LabelSource>();
+    return sources ? *std::move(sources) : std::vector<patient_builder::LabelSource>();
   }
   void expect_same(const fs::path& ct_folder, const fs::path& seg,
                    const std::vector<std::tuple<std::string, std::string, int>>& structures) {
@@ -294,7 +295,7 @@ TEST(RealCompressedSegmentation, MatchesTheUncompressedOne) {
   const auto read = [&](const char* file) {
     auto sources = read_label_sources({data / file}, "");
     EXPECT_TRUE(sources) << sources.error().text();
-    return sources ? *std::move(sources) : std::vector<anatomy::LabelSource>();
+    return sources ? *std::move(sources) : std::vector<patient_builder::LabelSource>();
   };
   const auto plain = read("pydata_liver.dcm");
   const auto run_length = read("pydata_liver_rle.dcm");

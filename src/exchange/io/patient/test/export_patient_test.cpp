@@ -33,10 +33,10 @@ anatomy::VirtualPatient numbered_patient() {
 }
 
 /// Voxels of a structure in sources on the patient's grid.
-std::vector<bool> voxels_named(const std::vector<anatomy::LabelSource>& sources, const std::string& name,
+std::vector<bool> voxels_named(const std::vector<patient_builder::LabelSource>& sources, const std::string& name,
                                const volume::GridGeometry& g) {
   std::vector<bool> inside(g.voxel_count(), false);
-  for (const anatomy::LabelSource& source : sources)
+  for (const patient_builder::LabelSource& source : sources)
     for (const auto& [value, structure] : source.names) {
       if (structure != name) continue;
       for (std::size_t n = 0; n < source.labels.voxels.size(); ++n) {

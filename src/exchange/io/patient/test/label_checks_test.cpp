@@ -59,7 +59,7 @@ class LabelChecks : public ::testing::Test {
     const auto sources = read_label_sources({path}, map, ct_, warnings_);
     if (!sources) return {sources.error().text()};
     std::vector<std::string> names;
-    for (const anatomy::LabelSource& source : *sources)
+    for (const patient_builder::LabelSource& source : *sources)
       for (const auto& [value, name] : source.names) names.push_back(name);
     return names;
   }

@@ -23,14 +23,14 @@ volume::LabelGrid labels_with(const std::vector<std::uint8_t>& values) {
   return labels;
 }
 
-std::string error_of(const Result<std::vector<anatomy::LabelSource>>& result) {
+std::string error_of(const Result<std::vector<patient_builder::LabelSource>>& result) {
   return result ? "read" : result.error().text();
 }
 
 /// The voxels of a structure, whichever source and value it has.
-std::vector<std::size_t> voxels_of(const std::vector<anatomy::LabelSource>& sources, const std::string& name) {
+std::vector<std::size_t> voxels_of(const std::vector<patient_builder::LabelSource>& sources, const std::string& name) {
   std::vector<std::size_t> voxels;
-  for (const anatomy::LabelSource& source : sources)
+  for (const patient_builder::LabelSource& source : sources)
     for (const auto& [value, label] : source.names)
       if (label == name)
         for (std::size_t n = 0; n < source.labels.voxels.size(); ++n)
@@ -246,7 +246,7 @@ TEST(LabelSources, PlaceASegNrrdOfSmallerExtent) {
   ct.size = {10, 10, 10};
   ct.spacing_mm = {2, 2, 3};
   ASSERT_EQ(sources->size(), 2U);
-  for (const anatomy::LabelSource& source : *sources) EXPECT_TRUE(source.is_described);
+  for (const patient_builder::LabelSource& source : *sources) EXPECT_TRUE(source.is_described);
   const volume::LabelGrid liver = volume::resample_nearest((*sources)[0].labels, ct, 0);
   const volume::LabelGrid tumor = volume::resample_nearest((*sources)[1].labels, ct, 0);
   EXPECT_EQ(std::count(liver.voxels.begin(), liver.voxels.end(), 1), 2);
@@ -269,7 +269,7 @@ TEST(LabelSources, KeepEveryTotalSegmentatorMask) {
   const auto sources = read_label_sources({folder}, "");
   ASSERT_TRUE(sources) << error_of(sources);
   std::size_t structures = 0;
-  for (const anatomy::LabelSource& source : *sources) structures += source.names.size();
+  for (const patient_builder::LabelSource& source : *sources) structures += source.names.size();
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string file = entry.path().filename().string();

@@ -21,7 +21,7 @@ using testing::write_bytes;
 using NumberNames = std::vector<std::pair<int, std::string>>;
 
 struct LabelsRead {
-  Result<std::vector<anatomy::LabelSource>> sources;
+  Result<std::vector<patient_builder::LabelSource>> sources;
   std::vector<std::string> warnings;
 
   std::string text() const { return sources ? "read" : sources.error().text(); }
@@ -79,7 +79,7 @@ TEST(NumberSchemes, OfferOnlyReadingsThatCoverTheFile) {
   const TemporaryFolder folder;
   const auto schemes_of = [&](const std::string& map, const NumberNames& given) {
     std::vector<std::string> names;
-    for (const anatomy::OtherReading& other : LabelMap::load(map)->other_readings(given))
+    for (const patient_builder::OtherReading& other : LabelMap::load(map)->other_readings(given))
       names.push_back(other.label_map);
     return names;
   };
@@ -94,7 +94,7 @@ TEST(NumberSchemes, OfferOnlyReadingsThatCoverTheFile) {
   ASSERT_TRUE(map) << map.error().text();
   const auto others = map->other_readings({{1, "spleen"}, {2, "liver"}});
   ASSERT_FALSE(others.empty());
-  for (const anatomy::OtherReading& other : others) {
+  for (const patient_builder::OtherReading& other : others) {
     EXPECT_NE(other.advice.find("base.toml"), std::string::npos);
     EXPECT_EQ(other.names.back().second, "liver") << other.label_map;
   }

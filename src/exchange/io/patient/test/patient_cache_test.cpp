@@ -4,10 +4,10 @@
 
 #include <fstream>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
 #include "core/testing/data_folder.h"
 #include "io/patient/patient_folder.h"
+#include "phantom/phantom.h"
 
 namespace trocar::io {
 namespace {
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 /// An embedded patient, coarse enough for a test.
 anatomy::VirtualPatient coarse(std::uint64_t seed) {
-  auto patient = anatomy::generate_phantom("abdomen", seed, {{40, 32, 36}});
+  auto patient = phantom::generate_phantom("abdomen", seed, {{40, 32, 36}});
   EXPECT_TRUE(patient) << patient.error().text();
   return *std::move(patient);
 }

@@ -79,7 +79,7 @@ TEST_F(PatientFolder, RoundTrips) {
   ASSERT_EQ(loaded->label_table.labels.size(), 2U);
   EXPECT_EQ(loaded->label_table.labels[1].name, "odd/name");
   EXPECT_EQ(loaded->label_table.labels[1].tissue, "bone");
-  EXPECT_EQ(loaded->label_table.labels[1].color, (volume::Rgb{255, 254, 0}));
+  EXPECT_EQ(loaded->label_table.labels[1].color, (image::Rgb{255, 254, 0}));
   EXPECT_FALSE(loaded->label_table.labels[0].is_derived);
   EXPECT_TRUE(loaded->label_table.labels[1].is_derived);
   ASSERT_EQ(loaded->repairs.size(), 2U);

@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
 #include "io/image/image_file.h"
 #include "io/markups_file.h"
 #include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
 #include "io/sequence/transform_file.h"
+#include "phantom/phantom.h"
 
 namespace trocar::io {
 namespace {
@@ -50,7 +50,7 @@ TEST(PatientPanorama, NamesMissingFilesAndTheCommandsToMakeThem) {
 
 TEST(PatientPanorama, IsWrittenWithAPatient) {
   const TemporaryFolder folder;
-  auto patient = anatomy::generate_phantom("layers-liver", 1);
+  auto patient = phantom::generate_phantom("layers-liver", 1);
   ASSERT_TRUE(patient);
   const volume::LabelGrid gray(volume::GridGeometry{{20, 20, 20}, Vec3::Ones(), Vec3(1, 2, 3), Mat3::Identity()}, 77);
   const ImageFields fields{{"trocar_dynamic_range_db", "48"}};

@@ -10,10 +10,11 @@
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
 #include "haptics/contact/test/flat_skin.h"
-#include "haptics/coupling/virtual_stylus.h"
+#include "haptics/scene_options.h"
 #include "haptics/test/tick_period.h"
 #include "haptics/tick.h"
 #include "lab/haptics/closed_loop.h"
+#include "stylus/virtual_stylus.h"
 
 namespace trocar::testing {
 namespace {
@@ -312,14 +313,14 @@ TEST_P(RestingOnSkin, ComesToRestAndStays) {
     const auto scene = make_face_scene(GetParam().tool, label_at, options);
     const double weight_n = 9.81 * GetParam().mass_kg;
     haptics::HapticState state;
-    haptics::VirtualDeviceState device{face_down({0, 0, -1}, 0.05), Vec3::Zero()};
-    haptics::HandHold hand;
+    stylus::VirtualDeviceState device{face_down({0, 0, -1}, 0.05), Vec3::Zero()};
+    stylus::HandHold hand;
     hand.R_PN = device.X_PN.R();
     Vec3 force_P = Vec3::Zero();
     Vec3 low = Vec3::Constant(1e9);
     Vec3 high = -low;
     for (int i = 0; i < 5000; ++i) {
-      haptics::step_device(device, {GetParam().mass_kg, weight_n}, hand, force_P, Vec3::UnitZ(), kDt_s);
+      stylus::step_device(device, {GetParam().mass_kg, weight_n}, hand, force_P, Vec3::UnitZ(), kDt_s);
       const Vec3 seen = (device.X_PN.p() / kCount_mm).array().round() * kCount_mm;
       force_P = haptics::tick(state, {kDt_s * i, kDt_s, telemetry::to_tool_pose({hand.R_PN, seen}), true, {}}, *scene)
                     .total_W.force_n;
@@ -340,7 +341,7 @@ INSTANTIATE_TEST_SUITE_P(BareMasses, RestingOnSkin,
 
 /// In six degrees of freedom: the hand presses and tilts the tool, a stylus of 50 kg mm^2 turns under it.
 TEST(ContactInClosedLoop, ComesToRestOverBone) {
-  const auto preset = haptics::load_device_preset(data_dir() / "devices.toml", "sigma7");
+  const auto preset = stylus::load_device_preset(data_dir() / "devices.toml", "sigma7");
   ASSERT_TRUE(preset.has_value());
   const auto thin = [](const Vec3& p) { return p.z() < 4.0 ? kFat : kBone; };
   const auto rib = [](const Vec3& p) { return p.z() > 4.0 && std::abs(p.x() - 6.0) < 5.0 ? kBone : kFat; };
@@ -350,7 +351,7 @@ TEST(ContactInClosedLoop, ComesToRestOverBone) {
       haptics::apply_device_preset(*preset, options);
       const auto scene = make_face_scene(tool, label_at, options);
       haptics::ClosedLoop loop(scene, *preset, haptics::Holder::kHand);
-      haptics::StylusHold hold = haptics::make_hand();
+      stylus::StylusHold hold = stylus::make_hand();
       loop.stylus().X_PS = hold.X_PS = face_down({0, 0, -1}, 0.1) * scene->X_SN.inverse();
       for (int i = 0; i < 4000; ++i) {
         hold.X_PS = face_down({0, 0, std::min(9.0, -1.0 + 0.02 * i)}, 0.1) * scene->X_SN.inverse();

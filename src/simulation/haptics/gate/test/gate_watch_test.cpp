@@ -21,7 +21,8 @@ using testing::wanting;
 
 /// Growth a period of a mass with viscosity on a coupling whose force is held for a period and one period late, in the
 /// last half of many periods: above 1 it swings up. Exact for a constant force.
-double growth_a_period(const CouplingParams& coupling, double share, double period_s, double mass, double viscosity) {
+double growth_a_period(const stylus::CouplingParams& coupling, double share, double period_s, double mass,
+                       double viscosity) {
   constexpr int kPeriods = 3000;
   const double a = viscosity / mass, e = std::exp(-a * period_s);
   const double way_of_v = (1.0 - e) / a, way_of_f = (period_s - way_of_v) / viscosity, v_of_f = (1.0 - e) / viscosity;
@@ -42,16 +43,16 @@ double growth_a_period(const CouplingParams& coupling, double share, double peri
 }
 
 TEST(GateLoop, WeakenedCouplingIsStableAtAnyPeriod) {
-  const auto presets = load_device_presets(data_dir() / "devices.toml");
+  const auto presets = stylus::load_device_presets(data_dir() / "devices.toml");
   ASSERT_TRUE(presets);
   constexpr double kPhase = 5e-4;  // where in its swing the mass is measured: a factor of 2 over 1500 periods
   int weakened = 0;
-  for (const DevicePreset& preset : *presets) {
+  for (const stylus::DevicePreset& preset : *presets) {
     if (!preset.has_force()) continue;
     const GateParams params = gate_params(preset);
     const double scale = preset.force_scale * preset.motion_scale;
-    const CouplingParams coupling{scale * preset.coupling.stiffness_n_per_mm,
-                                  scale * preset.coupling.damping_ns_per_mm};
+    const stylus::CouplingParams coupling{scale * preset.coupling.stiffness_n_per_mm,
+                                          scale * preset.coupling.damping_ns_per_mm};
     // A held device is heavier and damped more: this is the hand of which only b_p is left.
     const double held = params.physical_damping_ns_per_mm + 0.001;
     for (int period_ms = 1; period_ms <= 1000; period_ms += period_ms < 60 ? 1 : 47) {
@@ -70,14 +71,15 @@ TEST(GateLoop, WeakenedCouplingIsStableAtAnyPeriod) {
 }
 
 TEST(GateLoop, FullCouplingIsUnstableInTheSameLoops) {
-  const CouplingParams premium;
+  const stylus::CouplingParams premium;
   for (const double period_s : {0.009, 0.013, 0.021, 0.051})
     EXPECT_GT(growth_a_period(premium, 1.0, period_s, 1e-4, 0.0045), 1.15) << period_s;
 }
 
 TEST(GateLoop, ShareIsOneUpToTheLongestPeriodThenFalls) {
   const GateParams params;
-  for (const CouplingParams& coupling : {CouplingParams{}, CouplingParams{0.5, 0.0015}, CouplingParams{1.0, 0.0}}) {
+  for (const stylus::CouplingParams& coupling :
+       {stylus::CouplingParams{}, stylus::CouplingParams{0.5, 0.0015}, stylus::CouplingParams{1.0, 0.0}}) {
     const double longest_s = longest_period_s(coupling, params);
     EXPECT_NEAR(permitted_share(coupling, longest_s, params), 1.0, longest_s < 0.01 ? 1e-9 : 1.0);
     double before = 1.0;
@@ -160,7 +162,7 @@ TEST(GateLoop, CountsNothingWithoutForceOrMotors) {
   input.dt_s = 0.06;
   for (int i = 0; i < 20; ++i) step_gate(off, input, {});
   EXPECT_EQ(off.fault, telemetry::GateFault::kNone);
-  const auto mouse = load_device_preset(data_dir() / "devices.toml", "mouse");
+  const auto mouse = stylus::load_device_preset(data_dir() / "devices.toml", "mouse");
   ASSERT_TRUE(mouse);
   const GateParams params = gate_params(*mouse);
   GateState shown = open_gate(params);

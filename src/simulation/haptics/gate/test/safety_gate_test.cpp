@@ -376,10 +376,10 @@ TEST(SafetyGate, NamesUnusableParameters) {
 }
 
 TEST(SafetyGate, HasUsableParametersForEveryDevice) {
-  const auto presets = load_device_presets(data_dir() / "devices.toml");
+  const auto presets = stylus::load_device_presets(data_dir() / "devices.toml");
   ASSERT_TRUE(presets.has_value());
   ASSERT_FALSE(presets->empty());
-  for (const DevicePreset& preset : *presets) {
+  for (const stylus::DevicePreset& preset : *presets) {
     const GateParams params = gate_params(preset);
     EXPECT_TRUE(check(params).has_value()) << preset.name;
     EXPECT_EQ(params.peak_force_n, preset.capability.peak_force_n);

@@ -257,7 +257,7 @@ TEST(PathHold, TiltAboutTheStylusCausesOnlyTorque) {
 }
 
 TEST(PathHold, HoldsADeviceWithoutTorqueAtTheStylus) {
-  haptics::DeviceCapability device;
+  stylus::DeviceCapability device;
   device.peak_torque_nmm = 0.0;
   const auto scene = *make_haptic_scene(layered_patient(liver_way()), constrained_tissues(), {}, device,
                                         options_of(haptics::ForceModel::kInsertion));

@@ -9,9 +9,9 @@
 
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/coupling/virtual_stylus.h"
 #include "haptics/insertion/insertion_law.h"
 #include "haptics/test/layered_patient.h"
+#include "stylus/virtual_stylus.h"
 
 namespace trocar::testing {
 namespace {
@@ -233,8 +233,8 @@ TEST(HoldShaft, IsStableOnABareStylusWithOneTickDelay) {
       const World world = make_world(slabs, has_bending, {});
       for (const double tip_mm : {5.0, 45.0, 99.0}) {
         constexpr double kDt_s = 0.001, kAhead_s = 0.004;
-        const haptics::VirtualStylusParams stylus{0.045, 50.0, 0.0, 0.0};
-        haptics::VirtualStylusState state;
+        const stylus::VirtualStylusParams stylus{0.045, 50.0, 0.0, 0.0};
+        stylus::VirtualStylusState state;
         state.X_PS = displaced(world, tip_mm, {1, 0.5, 0}, {0.02, -0.01, 0}) * world.scene->X_SN.inverse();
         Wrench told, acting;
         double early = 0.0, late = 0.0;
@@ -247,7 +247,7 @@ TEST(HoldShaft, IsStableOnABareStylusWithOneTickDelay) {
               haptics::react(haptics::hold_shaft(world.channel, *world.scene, X_PS * world.scene->X_SN, tip_mm, true),
                              *world.scene, Vec3::Zero())
                   .wrench_P;
-          haptics::step_stylus(state, stylus, {}, acting, Vec3::UnitY(), kDt_s);
+          stylus::step_stylus(state, stylus, {}, acting, Vec3::UnitY(), kDt_s);
           const double motion = state.v_P.norm() + 100.0 * state.w_P.norm();
           if (i < 500) early = std::max(early, motion);
           if (i >= 1500) late = std::max(late, motion);

@@ -41,7 +41,7 @@ TEST(NeedleBalance, DryFrictionHoldsTheNeedle) {
 }
 
 TEST(NeedleBalance, SetsTheSpringsInSeries) {
-  haptics::CouplingParams coupling;
+  stylus::CouplingParams coupling;
   coupling.damping_ns_per_mm = 0.0;
   const haptics::NeedleBalance balance = haptics::balance_needle({coupling, {}, 3.0, 0.0, 0.001}, 0.5, 0.0);
   EXPECT_NEAR(balance.on_tip_n, 3.0 * 0.5 / 1.5, 1e-12);

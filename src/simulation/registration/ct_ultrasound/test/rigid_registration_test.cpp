@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "core/parallel.h"
 #include "lab/registration/generated_pair.h"
@@ -12,7 +11,6 @@
 namespace trocar::registration {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// Measured at most 0.5 mm at this coarse spacing of 2 mm.
 constexpr double kWorst_mm = 0.8;
 
@@ -109,9 +107,9 @@ TEST(OverlayPicture, ShowsBothVolumesSideBySide) {
   ASSERT_TRUE(picture);
   EXPECT_GT(picture->columns, picture->rows);
   // The blend is orange where there is ultrasound: red above blue.
-  const volume::Rgb blend = picture->at(picture->columns - picture->columns / 8, picture->rows / 4);
+  const image::Rgb blend = picture->at(picture->columns - picture->columns / 8, picture->rows / 4);
   EXPECT_GT(blend[0], blend[2]);
-  const volume::Rgb gray = picture->at(picture->columns / 8, picture->rows / 4);
+  const image::Rgb gray = picture->at(picture->columns / 8, picture->rows / 4);
   EXPECT_EQ(gray[0], gray[2]);
 }
 

@@ -9,23 +9,23 @@
 
 #include "core/parallel.h"
 #include "core/result.h"
+#include "image/image.h"
 #include "ultrasound/scanner/scan_annotation.h"
-#include "volume/image.h"
 
 namespace trocar::ultrasound {
 namespace {
 
-constexpr volume::Rgb kOutlineInk = {120, 190, 130};
+constexpr image::Rgb kOutlineInk = {120, 190, 130};
 
 /// Colours from the baseline to the end of the scale, evenly spaced.
-constexpr std::array<volume::Rgb, 5> kToFace = {{{60, 0, 0}, {150, 0, 0}, {225, 20, 0}, {250, 120, 0}, {255, 240, 90}}};
-constexpr std::array<volume::Rgb, 5> kFromFace = {
+constexpr std::array<image::Rgb, 5> kToFace = {{{60, 0, 0}, {150, 0, 0}, {225, 20, 0}, {250, 120, 0}, {255, 240, 90}}};
+constexpr std::array<image::Rgb, 5> kFromFace = {
     {{0, 0, 70}, {0, 10, 150}, {0, 50, 230}, {0, 150, 250}, {150, 250, 255}}};
 
-volume::Rgb blend(const std::array<volume::Rgb, 5>& colours, double share) noexcept {
+image::Rgb blend(const std::array<image::Rgb, 5>& colours, double share) noexcept {
   const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(colours.size() - 1);
   const auto low = std::min(static_cast<std::size_t>(place), colours.size() - 2);
-  volume::Rgb colour;
+  image::Rgb colour;
   for (std::size_t c = 0; c < 3; ++c)
     colour[c] = static_cast<std::uint8_t>(
         std::lround(std::lerp(colours[low][c], colours[low + 1][c], place - static_cast<double>(low))));
@@ -47,7 +47,7 @@ float half_turns(float re, float im) noexcept {
 
 }  // namespace
 
-volume::Rgb doppler_colour(double share, const DopplerSettings& settings) noexcept {
+image::Rgb doppler_colour(double share, const DopplerSettings& settings) noexcept {
   // With a baseline shift of b the scale ranges from b - 1 to b + 1.
   const double b = settings.baseline;
   if (share > b + 1.0) share -= 2.0;
@@ -57,21 +57,21 @@ volume::Rgb doppler_colour(double share, const DopplerSettings& settings) noexce
   return blend(to_face ? kToFace : kFromFace, part);
 }
 
-void draw_colour_bar(volume::RgbImage& image, int column, int row, int columns, int rows, double scale_cm_per_s,
+void draw_colour_bar(image::RgbImage& image, int column, int row, int columns, int rows, double scale_cm_per_s,
                      const DopplerSettings& settings) {
   const double b = settings.baseline;
   for (int r = 0; r < rows; ++r) {
-    const volume::Rgb colour = doppler_colour(b + 1.0 - 2.0 * (r + 0.5) / rows, settings);
+    const image::Rgb colour = doppler_colour(b + 1.0 - 2.0 * (r + 0.5) / rows, settings);
     for (int c = column; c < column + columns; ++c)
       if (c >= 0 && c < image.columns && row + r >= 0 && row + r < image.rows) image.at(c, row + r) = colour;
   }
   const int dot = std::max(1, image.columns / 640);
   const auto label = [&](double share, int at_row) {
-    volume::draw_text(image, column, at_row, fmt::format("{:+.0f}", share * scale_cm_per_s), kTextInk, dot);
+    image::draw_text(image, column, at_row, fmt::format("{:+.0f}", share * scale_cm_per_s), kTextInk, dot);
   };
-  label(b + 1.0, row - (volume::kGlyphHeight + 2) * dot);
+  label(b + 1.0, row - (image::kGlyphHeight + 2) * dot);
   label(b - 1.0, row + rows + 2 * dot);
-  volume::draw_text(image, column, row + rows + (volume::kGlyphHeight + 5) * dot, "cm/s", kTextInk, dot);
+  image::draw_text(image, column, row + rows + (image::kGlyphHeight + 5) * dot, "cm/s", kTextInk, dot);
 }
 
 namespace detail {
@@ -81,9 +81,9 @@ bool is_same_scan(const ScanGeometry& a, const ScanGeometry& b) noexcept {
          a.samples == b.samples && a.depth_mm == b.depth_mm;
 }
 
-void ColourConversion::make_tables(const GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
-                                   const DopplerFrame& frame) {
-  image_ = volume::RgbImage(image.columns, image.rows);
+void ColourConversion::make_tables(const image::GrayImage& image, const RasterGeometry& raster,
+                                   const ScanGeometry& scan, const DopplerFrame& frame) {
+  image_ = image::RgbImage(image.columns, image.rows);
   raster_ = raster;
   places_.clear();
   outline_.clear();
@@ -116,9 +116,9 @@ void ColourConversion::set_colours(const DopplerSettings& settings) noexcept {
     colours_[n] = doppler_colour(2.0 * (static_cast<double>(n) + 0.5) / kColours - 1.0, settings);
 }
 
-const volume::RgbImage& ColourConversion::convert(const GrayImage& image, const RasterGeometry& raster,
-                                                  const ScanGeometry& scan, const DopplerFrame& frame,
-                                                  const DopplerSettings& settings) {
+const image::RgbImage& ColourConversion::convert(const image::GrayImage& image, const RasterGeometry& raster,
+                                                 const ScanGeometry& scan, const DopplerFrame& frame,
+                                                 const DopplerSettings& settings) {
   const bool fits = is_made_ && image_.columns == image.columns && image_.rows == image.rows &&
                     raster_.is_mirrored == raster.is_mirrored && raster_.mm_per_pixel == raster.mm_per_pixel &&
                     raster_.first_T == raster.first_T;
@@ -126,7 +126,7 @@ const volume::RgbImage& ColourConversion::convert(const GrayImage& image, const 
   TROCAR_CHECK(image.pixels.size() == image_.pixels.size());
   set_colours(settings);
   std::transform(image.pixels.begin(), image.pixels.end(), image_.pixels.begin(), [](std::uint8_t gray) {
-    return volume::Rgb{gray, gray, gray};
+    return image::Rgb{gray, gray, gray};
   });
   auto part = [&](std::size_t first, std::size_t last) {
     const auto gates = static_cast<std::size_t>(frame.gates);

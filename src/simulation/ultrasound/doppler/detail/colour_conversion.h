@@ -17,8 +17,8 @@ class ColourConversion {
   ColourConversion() : image_() {}
   /// Discards the tables.
   void forget() noexcept { is_made_ = false; }
-  const volume::RgbImage& convert(const GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
-                                  const DopplerFrame& frame, const DopplerSettings& settings);
+  const image::RgbImage& convert(const image::GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
+                                 const DopplerFrame& frame, const DopplerSettings& settings);
 
  private:
   /// A pixel within the box: its cell (lower line and gate), and its distances to the next line and gate in 1/255 of a
@@ -30,16 +30,16 @@ class ColourConversion {
   };
   static constexpr std::size_t kColours = 512;
 
-  void make_tables(const GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
+  void make_tables(const image::GrayImage& image, const RasterGeometry& raster, const ScanGeometry& scan,
                    const DopplerFrame& frame);
   void set_colours(const DopplerSettings& settings) noexcept;
 
   bool is_made_ = false;
   RasterGeometry raster_;
-  volume::RgbImage image_;
+  image::RgbImage image_;
   std::vector<Place> places_;
   std::vector<std::int32_t> outline_;
-  std::array<volume::Rgb, kColours> colours_{};  ///< From -1 to 1 in fractions of the scale.
+  std::array<image::Rgb, kColours> colours_{};  ///< From -1 to 1 in fractions of the scale.
 };
 
 }  // namespace trocar::ultrasound::detail

@@ -88,7 +88,7 @@ int shown_cells(const DopplerFrame& frame) {
 TEST(ColourDoppler, MeasuresTheCosineOfTheAngle) {
   const auto flow = tube_flow(40.0);
   for (const double angle_deg : {0.0, 30.0, 45.0, 60.0, 75.0, 105.0, 135.0, 180.0}) {
-    const double angle = angle_deg * std::numbers::pi / 180.0;
+    const double angle = radians(angle_deg);
     ColourDoppler doppler(flow);
     doppler.settings = quiet(60.0);
     const DopplerInput input = look(angle);
@@ -177,7 +177,7 @@ TEST(ColourDoppler, NeverAllocatesPerFrame) {
   doppler.settings = quiet(60.0);
   const DopplerInput input = look(0.5);
   const RasterGeometry raster = fit_raster(input.geometry, 320, 240);
-  GrayImage gray{320, 240, std::vector<std::uint8_t>(320 * 240, 20)};
+  image::GrayImage gray{320, 240, std::vector<std::uint8_t>(320 * 240, 20)};
   doppler.render(input);
   doppler.overlay(gray, raster);
   doppler.settings.scale_cm_per_s = 30.0;
@@ -203,22 +203,22 @@ TEST(ColourDoppler, ColoursTheVesselAndLeavesBrightTissueGray) {
   doppler.settings = quiet(60.0);
   const DopplerInput input = look(0.0);
   const RasterGeometry raster = fit_raster(input.geometry, 320, 240);
-  GrayImage gray{320, 240, std::vector<std::uint8_t>(320 * 240, 20)};
+  image::GrayImage gray{320, 240, std::vector<std::uint8_t>(320 * 240, 20)};
   doppler.render(input);
   const Vec2 middle = raster.to_pixel({0.0, 50.0});
-  const auto pixel = [&](const volume::RgbImage& image) {
+  const auto pixel = [&](const image::RgbImage& image) {
     return image.at(static_cast<int>(middle.x()), static_cast<int>(middle.y()));
   };
-  const volume::Rgb away = pixel(doppler.overlay(gray, raster));
+  const image::Rgb away = pixel(doppler.overlay(gray, raster));
   EXPECT_GT(away[2], away[0] + 50);  // blue
-  const volume::Rgb beside = doppler.overlay(gray, raster).at(2, 2);
-  EXPECT_EQ(beside, (volume::Rgb{20, 20, 20}));
+  const image::Rgb beside = doppler.overlay(gray, raster).at(2, 2);
+  EXPECT_EQ(beside, (image::Rgb{20, 20, 20}));
   doppler.settings.is_inverted = true;
   doppler.render(input);
-  const volume::Rgb inverted = pixel(doppler.overlay(gray, raster));
+  const image::Rgb inverted = pixel(doppler.overlay(gray, raster));
   EXPECT_GT(inverted[0], inverted[2] + 50);
   std::fill(gray.pixels.begin(), gray.pixels.end(), std::uint8_t{200});
-  EXPECT_EQ(pixel(doppler.overlay(gray, raster)), (volume::Rgb{200, 200, 200}));
+  EXPECT_EQ(pixel(doppler.overlay(gray, raster)), (image::Rgb{200, 200, 200}));
 }
 
 TEST(ColourDoppler, ShowsNoFlowBehindBone) {
@@ -301,7 +301,7 @@ TEST(FlowCaliper, CorrectsForTheAngle) {
 TEST(DopplerColour, TurnsAtTheShiftedBaseline) {
   DopplerSettings settings;
   const auto is_red = [&](double share) {
-    const volume::Rgb colour = doppler_colour(share, settings);
+    const image::Rgb colour = doppler_colour(share, settings);
     return colour[0] > colour[2];
   };
   EXPECT_TRUE(is_red(0.5));

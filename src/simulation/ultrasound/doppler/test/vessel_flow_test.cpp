@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
+#include "phantom/phantom.h"
 #include "ultrasound/doppler/test/tube_patient.h"
 
 namespace trocar::ultrasound {
@@ -42,7 +42,7 @@ std::shared_ptr<const VesselFlow> ring_flow(const Vec3& spacing_mm) {
 
 const VesselFlow& abdomen_flow() {
   static const std::shared_ptr<const VesselFlow> kFlow =
-      *make_vessel_flow(*anatomy::generate_phantom("abdomen", 1, {{190, 150, 120}}), shipped_table(), {1.6, 100.0});
+      *make_vessel_flow(*phantom::generate_phantom("abdomen", 1, {{190, 150, 120}}), shipped_table(), {1.6, 100.0});
   return *kFlow;
 }
 

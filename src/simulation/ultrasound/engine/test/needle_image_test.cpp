@@ -51,7 +51,7 @@ double mean_level_db(NeedleAlone& engine, double angle_rad, double depth_mm = 60
 TEST(NeedleImage, ShowsALineWhereTheShaftLies) {
   NeedleAlone engine;
   for (const double angle_deg : {90.0, 75.0, 60.0, 40.0}) {
-    const auto shaft = shaft_to({20.0, 75.0, 0.0}, in_plane(angle_deg * kPi / 180.0), 50.0);
+    const auto shaft = shaft_to({20.0, 75.0, 0.0}, in_plane(radians(angle_deg)), 50.0);
     const BasebandFrame frame = seen(engine, needle_of(shaft));
     int met = 0;
     for (int line = 4; line < frame.geometry.lines - 4; ++line) {
@@ -73,7 +73,7 @@ TEST(NeedleImage, LevelFollowsTheTilt) {
   // Rough surfaces glint: 51 measurements of which a third are independent leave 1.1 dB. Gaps, some of which are in the
   // measured part, leave 3 dB.
   for (const double tilt_deg : {0.0, 8.0, 16.0, 24.0, 35.0, 50.0, 65.0, 80.0})
-    EXPECT_NEAR(mean_level_db(engine, (90.0 - tilt_deg) * kPi / 180.0), shaft_db(tilt_deg * kPi / 180.0),
+    EXPECT_NEAR(mean_level_db(engine, radians(90.0 - tilt_deg)), shaft_db(radians(tilt_deg)),
                 tilt_deg < 20.0 ? 1.0 : 4.0)
         << tilt_deg;
 }
@@ -102,15 +102,15 @@ double unevenness_db(NeedleAlone& engine, double angle) {
 
 TEST(NeedleImage, HasGapsAtObliqueAnglesOnly) {
   NeedleAlone engine(shallow(256, 1024));
-  EXPECT_LT(unevenness_db(engine, 80.0 * kPi / 180.0), 2.5);
-  EXPECT_GT(unevenness_db(engine, 40.0 * kPi / 180.0), 3.0);
+  EXPECT_LT(unevenness_db(engine, radians(80.0)), 2.5);
+  EXPECT_GT(unevenness_db(engine, radians(40.0)), 3.0);
 }
 
 TEST(NeedleImage, LevelFallsWithTheTilt) {
   NeedleAlone engine;
   double last_db = 1e9;
   for (const double tilt_deg : {0.0, 10.0, 20.0, 30.0, 50.0, 75.0}) {
-    const double level_db = mean_level_db(engine, (90.0 - tilt_deg) * kPi / 180.0);
+    const double level_db = mean_level_db(engine, radians(90.0 - tilt_deg));
     EXPECT_LT(level_db, last_db) << tilt_deg;
     last_db = level_db;
   }
@@ -121,8 +121,7 @@ TEST(NeedleImage, LevelIsIndependentOfLinesSamplesAndDepth) {
     for (const auto& [lines, samples] : {std::pair{96, 640}, std::pair{256, 640}, std::pair{128, 1024}}) {
       NeedleAlone engine(shallow(lines, samples));
       for (const double depth_mm : {30.0, 60.0, 80.0})
-        EXPECT_NEAR(mean_level_db(engine, angle_deg * kPi / 180.0, depth_mm),
-                    shaft_db((90.0 - angle_deg) * kPi / 180.0), 1.0)
+        EXPECT_NEAR(mean_level_db(engine, radians(angle_deg), depth_mm), shaft_db(radians(90.0 - angle_deg)), 1.0)
             << angle_deg << " " << lines << " " << samples << " " << depth_mm;
     }
 }
@@ -170,7 +169,7 @@ TEST(NeedleImage, IsADotAcrossThePlane) {
 TEST(NeedleImage, TipIsBrighterThanASteepShaft) {
   NeedleAlone engine;
   const Vec3 tip(0.0, 70.0, 0.0);
-  const auto shaft = shaft_to(tip, in_plane(15.0 * kPi / 180.0));
+  const auto shaft = shaft_to(tip, in_plane(radians(15.0)));
   const BasebandFrame frame = seen(engine, needle_of(shaft));
   const double tip_db = peak_of(frame, frame.geometry.lines / 2, 66.0, 71.0).level_db;
   EXPECT_GT(tip_db, kTipPoint_db - 4.0);

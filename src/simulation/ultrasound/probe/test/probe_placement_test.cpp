@@ -6,9 +6,9 @@
 #include <numbers>
 #include <vector>
 
-#include "anatomy/phantom/layers.h"
-#include "anatomy/phantom/phantom.h"
 #include "core/files/folders.h"
+#include "phantom/layers.h"
+#include "phantom/phantom.h"
 #include "ultrasound/probe/probe_contact.h"
 #include "volume/sampling.h"
 
@@ -16,7 +16,7 @@ namespace trocar::ultrasound {
 namespace {
 
 const anatomy::VirtualPatient& abdomen() {
-  static const anatomy::VirtualPatient kPatient = *anatomy::generate_phantom("abdomen", 1, {{145, 114, 92}});
+  static const anatomy::VirtualPatient kPatient = *phantom::generate_phantom("abdomen", 1, {{145, 114, 92}});
   return kPatient;
 }
 
@@ -118,7 +118,7 @@ TEST(ProbePlacement, LayeredScenesHaveTheirViews) {
                                                         {"layers-liver", "intercostal"},
                                                         {"layers-liver", "bile-duct"}};
   for (const auto& [scene, name] : kViews) {
-    const auto patient = anatomy::phantom::make_layered_scene(scene, 1, {{50, 88, 50}});
+    const auto patient = phantom::make_layered_scene(scene, 1, {{50, 88, 50}});
     ASSERT_TRUE(patient.has_value());
     const Placed placed = place_named_view(*patient, name);
     expect_on_skin(*patient, placed);
@@ -140,7 +140,7 @@ TEST(ProbePlacement, KidneyViewCrossesLiverButNoBone) {
 }
 
 TEST(ProbePlacement, IntercostalViewLiesBetweenTwoRibs) {
-  const auto liver = anatomy::phantom::make_layered_scene("layers-liver", 1, {{100, 175, 100}});
+  const auto liver = phantom::make_layered_scene("layers-liver", 1, {{100, 175, 100}});
   for (const anatomy::VirtualPatient* patient : {&abdomen(), &*liver}) {
     const Placed placed = place_named_view(*patient, "intercostal");
     const double middle = placed.scan.middle_line();

@@ -104,21 +104,21 @@ TEST(ScanAnnotation, WedgeShowsTheGrayMap) {
 TEST(ScanAnnotation, DrawsWithinTheImage) {
   const ScanGeometry scan = fan_of_depth(160.0);
   const ScanAnnotation annotation = make_scan_annotation(fit_raster(scan, 640, 480), scan, caption());
-  volume::RgbImage image(640, 480);
+  image::RgbImage image(640, 480);
   draw_annotation(image, annotation);
   const auto row = static_cast<int>(std::lround(annotation.ticks[5].row));
-  EXPECT_NE(image.at(annotation.scale_column - 1, row), (volume::Rgb{0, 0, 0}));
-  EXPECT_EQ(image.at(320, 240), (volume::Rgb{0, 0, 0}));
-  volume::RgbImage tiny(20, 16);
+  EXPECT_NE(image.at(annotation.scale_column - 1, row), (image::Rgb{0, 0, 0}));
+  EXPECT_EQ(image.at(320, 240), (image::Rgb{0, 0, 0}));
+  image::RgbImage tiny(20, 16);
   draw_annotation(tiny, annotation);  // sanitizers watch
-  volume::RgbImage none;
+  image::RgbImage none;
   draw_annotation(none, annotation);
 }
 
 TEST(ScanAnnotation, ConvertsGrayToRgb) {
-  const volume::RgbImage image = to_rgb({2, 1, {7, 200}});
-  EXPECT_EQ(image.at(0, 0), (volume::Rgb{7, 7, 7}));
-  EXPECT_EQ(image.at(1, 0), (volume::Rgb{200, 200, 200}));
+  const image::RgbImage image = image::to_rgb({2, 1, {7, 200}});
+  EXPECT_EQ(image.at(0, 0), (image::Rgb{7, 7, 7}));
+  EXPECT_EQ(image.at(1, 0), (image::Rgb{200, 200, 200}));
 }
 
 }  // namespace

@@ -233,7 +233,7 @@ TEST(Scanner, GeometryFollowsTheFrame) {
   frame.geometry.samples = 200;
   frame.re.assign(kFrameLines * 200, 0.0F);
   frame.im.assign(kFrameLines * 200, 0.0F);
-  const GrayImage& image = scanner.show(frame, 1);
+  const image::GrayImage& image = scanner.show(frame, 1);
   EXPECT_LT(scanner.raster().mm_per_pixel, coarse_mm);
   EXPECT_EQ(scanner.polar().size(), static_cast<std::size_t>(kFrameLines * 200));
   EXPECT_EQ(std::count(image.pixels.begin(), image.pixels.end(), 0), std::ssize(image.pixels));
@@ -243,9 +243,9 @@ TEST(Scanner, MirrorSwapsLeftAndRight) {
   Scanner scanner = make_scanner(false, false);
   const BasebandFrame frame = liver_frame(7);
   scanner.settings.is_mirrored = false;
-  const GrayImage straight = scanner.show(frame, 1);
+  const image::GrayImage straight = scanner.show(frame, 1);
   scanner.settings.is_mirrored = true;
-  const GrayImage& mirrored = scanner.show(frame, 1);
+  const image::GrayImage& mirrored = scanner.show(frame, 1);
   int differences = 0;
   for (int row = 0; row < straight.rows; ++row) {
     for (int column = 0; column < straight.columns; ++column) {

@@ -56,7 +56,7 @@ double worst_side_mm(const AcousticScene& scene, const Vec3& normal, std::uint8_
 
 TEST(AcousticScene, SlantedBorderHasNoTerracesBetweenThickSlices) {
   for (const double slope_deg : {20.0, 35.0, 60.0}) {
-    const double slope = slope_deg * std::numbers::pi / 180.0;
+    const double slope = radians(slope_deg);
     const Vec3 normal(std::sin(slope) * 0.8, std::sin(slope) * 0.6, std::cos(slope));
     const anatomy::VirtualPatient patient = make_block({56, 60, 60}, {0.7, 0.7, 5.0}, [&](const Vec3& p_P) {
       return BlockVoxel{normal.dot(p_P - Vec3(0, 25, 0)) < 0.0 ? kLiver : kKidney, 60};
@@ -89,7 +89,7 @@ TEST(AcousticScene, BallKeepsItsVolumeAndShape) {
 
 TEST(AcousticScene, WallOfOneVoxelHasNoHole) {
   for (const double turn_deg : {0.0, 13.0, 27.0, 45.0}) {
-    const double turn = turn_deg * std::numbers::pi / 180.0;
+    const double turn = radians(turn_deg);
     const Vec3 normal(std::sin(turn), std::cos(turn), 0.0);
     const anatomy::VirtualPatient patient = make_block({50, 60, 40}, {0.7, 0.7, 2.5}, [&](const Vec3& p_P) {
       const double side_mm = normal.dot(p_P - Vec3(0, 22.1, 0));

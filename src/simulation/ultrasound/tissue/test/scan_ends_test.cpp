@@ -52,7 +52,7 @@ TEST(ScanEnds, ComputeShareAndPolygonOfAHalfImage) {
 
 TEST(ScanEnds, HatchLiesBeyondTheEndsWithinTheScan) {
   const RasterGeometry raster = fit_raster(short_fan(), 200, 160);
-  volume::RgbImage image(200, 160);
+  image::RgbImage image(200, 160);
   hatch_unscanned(image, raster, short_fan(), Pose(), {{Vec3::UnitX(), 0.0}});
   int hatched = 0, beyond = 0;
   for (int row = 0; row < image.rows; ++row) {
@@ -61,7 +61,7 @@ TEST(ScanEnds, HatchLiesBeyondTheEndsWithinTheScan) {
       const Polar at = short_fan().to_polar(p_T);
       const bool is_beyond = p_T.x() > 0.0 && at.line <= 64.0 && at.depth_mm >= 0.0 && at.depth_mm <= 100.0;
       beyond += is_beyond ? 1 : 0;
-      if (image.at(column, row) == volume::Rgb{0, 0, 0}) continue;
+      if (image.at(column, row) == image::Rgb{0, 0, 0}) continue;
       ++hatched;
       EXPECT_TRUE(is_beyond) << column << " " << row;
     }

@@ -18,7 +18,7 @@ inline constexpr std::array<volume::Index3, 6> kNeighbours{
 
 /// The way of contrast agent through tissue from a tip, on an isotropic lattice: each voxel's reach, the distance from
 /// the tip weighted with the resistance on the way (fast marching, |grad reach| = resistance), and its uptake. Both
-/// are heterogeneous (uptake_field.h); beside vessels and ducts, along the tracts, the resistance is lower.
+/// are heterogeneous (uptake_field); beside vessels and ducts, along the tracts, the resistance is lower.
 /// docs/physics.md, X14.
 class StainSite {
  public:

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "anatomy/phantom/phantom.h"
 #include "duct_patient.h"
+#include "phantom/phantom.h"
 
 namespace trocar::xray {
 namespace {
@@ -156,7 +156,7 @@ TEST(DuctTree, IsEmptyWithoutDucts) {
 }
 
 TEST(DuctTree, IsObstructedAtTheTumourInTheEmbeddedPatient) {
-  const auto patient = anatomy::generate_phantom("ptcd-3", 1, {.voxel_mm = 2.5});
+  const auto patient = phantom::generate_phantom("ptcd-3", 1, {.voxel_mm = 2.5});
   ASSERT_TRUE(patient) << patient.error().text();
   const DuctTree tree = make_duct_tree(*patient);
   EXPECT_EQ(std::count_if(tree.cells.begin(), tree.cells.end(), [](const DuctCell& cell) { return cell.is_closed; }),

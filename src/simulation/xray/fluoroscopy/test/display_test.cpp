@@ -40,10 +40,10 @@ std::vector<float> ramp() {
 TEST(Display, ShowsAttenuationLinearlyWithDenseDark) {
   const auto signal = ramp();
   const auto values = shown_values(signal, kPixels, kPixels, plain(), field_pixels(small_arm()));
-  const GrayImage image = to_gray(values, kPixels, kPixels, {1.0F, 3.0F}, false, field_pixels(small_arm()));
+  const image::GrayImage image = to_gray(values, kPixels, kPixels, {1.0F, 3.0F}, false, field_pixels(small_arm()));
   for (int column = 0; column < kPixels; ++column)
     EXPECT_NEAR(image.pixels[at(column, 9)], 255.0 * (0.95 - 0.9 * column / 63.0), 1.0);
-  const GrayImage inverted = to_gray(values, kPixels, kPixels, {1.0F, 3.0F}, true, field_pixels(small_arm()));
+  const image::GrayImage inverted = to_gray(values, kPixels, kPixels, {1.0F, 3.0F}, true, field_pixels(small_arm()));
   for (std::size_t n = 0; n < kCount; ++n) EXPECT_NEAR(inverted.pixels[n] + image.pixels[n], 255, 1);
 }
 
@@ -51,7 +51,7 @@ TEST(Display, KeepsDifferencesBeyondTheWindow) {
   const auto signal = ramp();
   const FieldPixels field = field_pixels(small_arm());
   const auto values = shown_values(signal, kPixels, kPixels, plain(), field);
-  const GrayImage image = to_gray(values, kPixels, kPixels, {1.8F, 2.2F}, false, field);
+  const image::GrayImage image = to_gray(values, kPixels, kPixels, {1.8F, 2.2F}, false, field);
   for (int column = 1; column < kPixels; ++column)
     EXPECT_LE(image.pixels[at(column, 9)], image.pixels[at(column - 1, 9)]);
   const auto darkest_in = at(static_cast<int>(0.6 * 63), 9);  // at 2.2
@@ -66,7 +66,7 @@ TEST(Display, ShowsTheSignalIfLinear) {
   std::vector<float> signal(kCount, 0.25F);
   signal[at(3, 3)] = 0.5F;
   const auto values = shown_values(signal, kPixels, kPixels, settings, field_pixels(small_arm()));
-  const GrayImage image = to_gray(values, kPixels, kPixels, {-0.5F, 0.0F}, false, field_pixels(small_arm()));
+  const image::GrayImage image = to_gray(values, kPixels, kPixels, {-0.5F, 0.0F}, false, field_pixels(small_arm()));
   EXPECT_NEAR(image.pixels[at(3, 3)], 0.95 * 255.0, 1.0);
   EXPECT_NEAR(image.pixels[at(9, 9)], 127.5, 1.0);
 }
@@ -96,7 +96,8 @@ TEST(Display, LungsAtTheEdgeDoNotDarkenTheAbdomen) {
       signal[at(column, row)] = row < 16 ? std::exp(-1.0F) : std::exp(-4.0F - static_cast<float>(column) / 63.0F);
   const FieldPixels field = field_pixels(small_arm());
   const auto values = shown_values(signal, kPixels, kPixels, plain(), field);
-  const GrayImage image = to_gray(values, kPixels, kPixels, window_of(values, signal, kPixels, field), false, field);
+  const image::GrayImage image =
+      to_gray(values, kPixels, kPixels, window_of(values, signal, kPixels, field), false, field);
   EXPECT_EQ(image.pixels[at(32, 8)], 255);
   EXPECT_GT(image.pixels[at(0, 40)], 120);  // the thinnest part of the abdomen
   EXPECT_LT(image.pixels[at(63, 40)], 15);
@@ -104,7 +105,8 @@ TEST(Display, LungsAtTheEdgeDoNotDarkenTheAbdomen) {
 
 TEST(Display, BlackensTheShutters) {
   const std::vector<float> values(kCount, 0.0F);
-  const GrayImage image = to_gray(values, kPixels, kPixels, {1.0F, 2.0F}, false, field_pixels(small_arm(0.5, 0.25)));
+  const image::GrayImage image =
+      to_gray(values, kPixels, kPixels, {1.0F, 2.0F}, false, field_pixels(small_arm(0.5, 0.25)));
   int lit = 0;
   for (int row = 0; row < kPixels; ++row)
     for (int column = 0; column < kPixels; ++column) {
@@ -195,7 +197,7 @@ TEST(RoadMap, KeepsTheGreatestOpacificationAndLightensIt) {
   map.add(difference);
   EXPECT_FLOAT_EQ(map.greatest()[at(5, 5)], 0.4F);
   EXPECT_FLOAT_EQ(map.greatest()[at(6, 5)], 0.2F);
-  GrayImage image{kPixels, kPixels, std::vector<std::uint8_t>(kCount, 100)};
+  image::GrayImage image{kPixels, kPixels, std::vector<std::uint8_t>(kCount, 100)};
   map.overlay(0.05F, 0.4F, image);
   EXPECT_GT(image.pixels[at(5, 5)], image.pixels[at(6, 5)]);
   EXPECT_GT(image.pixels[at(6, 5)], 100);

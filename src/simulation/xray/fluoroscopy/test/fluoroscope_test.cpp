@@ -130,9 +130,9 @@ TEST(Fluoroscope, HidesATraceOfContrastAgent) {
   auto iodine = std::make_shared<Iodine>();
   iodine->pieces.push_back({{0.0, 0.0, -20.0}, {0.0, 0.0, 20.0}, 10.0, 10.0, 1e-6});
   Fluoroscope without(fat()), with(fat());
-  const GrayImage expected = without.frame(request, 1).value().gray;
+  const image::GrayImage expected = without.frame(request, 1).value().gray;
   request.iodine = iodine;
-  const GrayImage traced = with.frame(request, 1).value().gray;
+  const image::GrayImage traced = with.frame(request, 1).value().gray;
   for (std::size_t n = 0; n < expected.pixels.size(); ++n) EXPECT_NEAR(traced.pixels[n], expected.pixels[n], 1);
 }
 
