@@ -279,8 +279,7 @@ function(trocar_add_test name library)
     set_tests_properties(embedded_patient PROPERTIES FIXTURES_SETUP embedded_patient TIMEOUT ${timeout_s} COST 1000
       ENVIRONMENT "${environment}")
   endif()
-  # What is left unchecked there runs the reference attempts as any Debug build.
-  if(is_sanitized OR (name STREQUAL "same_bits" AND TROCAR_SANITIZED STREQUAL "quick"))
+  if(is_sanitized)
     set_tests_properties(${name} PROPERTIES LABELS quick)
     add_dependencies(quick_tests ${name}_test)
   endif()
