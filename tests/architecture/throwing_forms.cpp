@@ -51,8 +51,7 @@ const std::vector<Form>& forms() {
       // thread_([this] {...}), threads.emplace_back([this] {...})
       {thread_home, std::regex(R"(\b\w*threads?_?(\s*\.\s*emplace\w*)?\s*[({]\s*\[)"), thread_advice},
       {thread_home, std::regex(R"(\b(std::async|pthread_create|thrd_create)\b)"), thread_advice},
-      {"src/foundation/core/files/folders",
-       std::regex(R"(\bdirectory_iterator\b|\brecursive_directory_iterator\b)"),
+      {"src/foundation/core/files/folders", std::regex(R"(\bdirectory_iterator\b|\brecursive_directory_iterator\b)"),
        "list folders with core/files/folders.h"}};
   return all;
 }

@@ -58,7 +58,9 @@ void expect_same(const cases::Case& axial, const Attempt& expected, const Volume
 TEST(StorageOrder, DoesNotMatterForPathAndForces) {
   const volume::CtGrid ct = patient_builder::Torso().ct(patient_builder::Torso::grid({6, 5, 8}));
   const patient_builder::LabelSource liver{
-      "liver.nii.gz", patient_builder::Torso::mask(patient_builder::Torso::grid({6, 5, 8}), patient_builder::Torso::is_liver), {{1, "liver"}}};
+      "liver.nii.gz",
+      patient_builder::Torso::mask(patient_builder::Torso::grid({6, 5, 8}), patient_builder::Torso::is_liver),
+      {{1, "liver"}}};
   const Volumes volumes{ct, {liver}};
   const auto axial = case_of(volumes);
   ASSERT_TRUE(axial.has_value()) << axial.error().text();

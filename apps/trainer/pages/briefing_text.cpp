@@ -289,7 +289,7 @@ std::vector<BriefingRow> referral_rows(const TrainerChoice& choice) {
             {BriefingText::tr("Posture"), escaped(std::string(posture_words(referral.posture)))}};
   }
   const PatientEntry entry = info ? PatientEntry{{}, to_qt(info->name), {}, shown(info->description), {}, {}}
-                                             : folder_entry(to_qt(choice.patient));
+                                  : folder_entry(to_qt(choice.patient));
   return {
       {BriefingText::tr("Patient"), QStringLiteral("<b>%1</b>").arg(entry.name.toHtmlEscaped())},
       {BriefingText::tr("Description"), entry.description.isEmpty() ? not_stated() : entry.description.toHtmlEscaped()},

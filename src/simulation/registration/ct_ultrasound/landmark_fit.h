@@ -21,7 +21,7 @@ struct LandmarkFit {
   std::vector<std::string> unmatched;  ///< Labels of one side only.
   std::string worst;                   ///< Pair whose omission improves the fit most.
   double worst_mm = 0.0;               ///< Its residual.
-  std::string warning;                   ///< Why the fit is doubtful; empty if it is not.
+  std::string warning;                 ///< Why the fit is doubtful; empty if it is not.
 };
 
 /// Pairs the points by label and fits them (docs/physics.md R10). Errors: a label twice on one side, fewer than three
