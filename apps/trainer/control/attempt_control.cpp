@@ -303,7 +303,7 @@ void AttemptControl::advance(double dt_s) {
     // The hands wait at the poses of the tools, to avoid a jump when the forces return.
     needle_.put(view_.needle.X_PN);
   }
-  planned_.advance(needle_, probe_, dt_s);
+  planned_.advance(needle_, probe_, view_, dt_s);
   hand_.advance();
   if (!is_led_[1] && view_.probe.is_known) probe_.put(view_.probe.X_PT);
   attempt_.set_goal(attempt::Tool::kNeedle, needle_.X_PN());

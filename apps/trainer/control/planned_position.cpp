@@ -13,6 +13,7 @@ namespace {
 // Slower than the limits of a hand in attempt/tools/tool_motion.h, so that the tool does not cut corners through the
 // body.
 constexpr double kMost_mm_per_s = 0.8 * attempt::kFreeHand.most_mm_per_s;
+constexpr double kMostAhead_mm = 20.0;  // a window's latency at this speed, and a transducer that presses
 constexpr double kMost_rad_per_s = 0.8 * attempt::kFreeHand.most_rad_per_s;
 
 }  // namespace
@@ -31,16 +32,19 @@ void PlannedPosition::stop(ActiveTool tool) {
   if (tool == ActiveTool::kTransducer) is_probe_moving_ = false;
 }
 
-void PlannedPosition::advance(attempt::PointerNeedle& needle, attempt::PointerProbe& probe, double dt_s) {
+void PlannedPosition::advance(attempt::PointerNeedle& needle, attempt::PointerProbe& probe,
+                              const attempt::AttemptView& view, double dt_s) {
   constexpr double kLongest_s = 0.1;  // of a frame: a late one does not make the tool jump
   const double step_s = std::clamp(dt_s, 0.0, kLongest_s);
   const double most_mm = kMost_mm_per_s * step_s, most_rad = kMost_rad_per_s * step_s;
-  if (is_needle_moving_) {
+  const auto is_near = [](const Pose& hand, const Pose& tool) { return (hand.p() - tool.p()).norm() < kMostAhead_mm; };
+  if (is_needle_moving_ && is_near(needle.X_PN(), view.needle.X_PN)) {
     const bool is_aimed = needle.approach(open_->the_case.plan.line_P, most_mm, most_rad);
     const bool is_turned = !bevel_P_ || needle.turn_bevel(*bevel_P_, most_rad);
     is_needle_moving_ = !(is_aimed && is_turned);
   }
-  if (is_probe_moving_) is_probe_moving_ = !probe.approach(open_->X_PT_start, most_mm, most_rad);
+  if (is_probe_moving_ && is_near(probe.X_PT(), view.probe.X_PT))
+    is_probe_moving_ = !probe.approach(open_->X_PT_start, most_mm, most_rad);
 }
 
 std::optional<ActiveTool> tool_of(const tasks::Phase& phase) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "attempt/live/attempt_view.h"
 #include "attempt/tools/pointer_tools.h"
 #include "cases/open_case.h"
 #include "panels/puncture_panel.h"
@@ -18,8 +19,10 @@ class PlannedPosition {
 
   void start(ActiveTool tool);
   void stop(ActiveTool tool);
-  /// Call once per frame.
-  void advance(attempt::PointerNeedle& needle, attempt::PointerProbe& probe, double dt_s);
+  /// Call once per frame. A hand waits for a tool that is far behind it (`view`): from there the tool would go straight
+  /// to it, through the body.
+  void advance(attempt::PointerNeedle& needle, attempt::PointerProbe& probe, const attempt::AttemptView& view,
+               double dt_s);
 
  private:
   std::shared_ptr<const cases::OpenCase> open_;
