@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -26,5 +27,15 @@ Result<Json> load_json(const std::filesystem::path& path);
 
 /// The document as text; bytes that are not UTF-8 are replaced; they do not throw. indent < 0: one line.
 std::string json_text(const Json& json, int indent = 2);
+
+/// The value; null if there is none.
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+/// The text; null if it is empty.
+inline Json or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
 
 }  // namespace trocar::config

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string_view>
 
+#include "config/csv.h"
 #include "core/files/input_file.h"
 #include "core/text.h"
 #include "geometry/pose.h"
@@ -164,7 +165,13 @@ Result<PoseLayout> find_layout(const Header& header, const std::string& where) {
   return layout;
 }
 
-using Fields = std::vector<std::string_view>;
+using Fields = std::vector<std::string>;
+
+std::string_view trimmed(std::string_view text) noexcept {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
 
 /// Reads the values of one row; keeps the first fault.
 class RowReader {
@@ -173,7 +180,7 @@ class RowReader {
 
   /// NaN for an empty field and for "nan".
   double number(const PoseColumn& column) {
-    const std::string_view text = fields_[column.index];
+    const std::string_view text = trimmed(fields_[column.index]);
     if (text.empty() || text == "nan" || text == "-nan") return std::numeric_limits<double>::quiet_NaN();
     if (const auto value = parse_number<double>(text)) return *value * column.scale;
     refuse(column.name, fmt::format("'{}' is not a number", text.substr(0, 40)), kNumberAdvice);
@@ -185,7 +192,7 @@ class RowReader {
     return std::isnan(value) ? std::nullopt : std::optional(value);
   }
   Vec3 vector(const PoseColumns<3>& columns) { return {number(columns[0]), number(columns[1]), number(columns[2])}; }
-  std::string_view text(std::size_t column) const { return fields_[column]; }
+  std::string_view text(std::size_t column) const { return trimmed(fields_[column]); }
 
   void refuse(std::string_view column, const std::string& what, const char* advice) {
     if (!fault_.empty()) return;
@@ -289,21 +296,19 @@ struct PoseTable::Impl {
 
   /// Visits every row after the header. Errors: see read().
   Status walk(std::vector<std::string>& names, const std::function<void(const Moment&)>& visit) const {
-    std::string_view rest = text;
-    detail::take_line(rest);
+    config::CsvReader rows(text, where);
+    config::CsvRow row;
+    TROCAR_TRY_STATUS(rows.next(row));  // the header
     double last_s = -std::numeric_limits<double>::infinity();
-    Fields fields;
-    for (std::size_t line = 2; !rest.empty(); ++line) {
-      const std::string_view row = detail::take_line(rest);
-      if (row.empty()) continue;
-      const char* const broken = detail::split_fields(row, fields);
+    while (true) {
+      TROCAR_TRY(const bool has_row, rows.next(row));
+      if (!has_row) return {};
       const auto refuse = [&](const std::string& what, const char* advice) {
-        return fail(fmt::format("line {}: {}", line, what), where, advice);
+        return fail(fmt::format("line {}: {}", row.line, what), where, advice);
       };
-      if (broken != nullptr) return refuse(fmt::format("field {}: {}", fields.size(), broken), "check the quotes");
-      if (fields.size() != layout.fields)
-        return refuse(fmt::format("{} fields, the header has {}", fields.size(), layout.fields), kFieldAdvice);
-      RowReader reader(fields);
+      if (row.fields.size() != layout.fields)
+        return refuse(fmt::format("{} fields, the header has {}", row.fields.size(), layout.fields), kFieldAdvice);
+      RowReader reader(row.fields);
       const Moment moment = read_row(reader, names);
       if (!reader.fault().empty()) return refuse(reader.fault(), reader.advice());
       if (moment.time_s < last_s)
@@ -312,7 +317,6 @@ struct PoseTable::Impl {
       last_s = moment.time_s;
       visit(moment);
     }
-    return {};
   }
 };
 
@@ -327,15 +331,10 @@ Result<PoseTable> PoseTable::read(const std::filesystem::path& path) {
   TROCAR_TRY(const InputFile file, InputFile::open(path, FileLimit{FileKind::kOther, "table of poses", kMostBytes}));
   TROCAR_TRY(impl->text, file.read_all());
   if (impl->text.empty()) return fail("the file is empty", impl->where, kAdvice);
-  std::string_view rest = impl->text;
-  if (rest.starts_with("\xEF\xBB\xBF")) {  // byte order mark of spreadsheet programs
-    impl->text.erase(0, 3);
-    rest = impl->text;
-  }
-  Fields fields;
-  if (const char* broken = detail::split_fields(detail::take_line(rest), fields))
-    return fail(fmt::format("line 1: field {}: {}", fields.size(), broken), impl->where, "check the quotes");
-  TROCAR_TRY(impl->layout, find_layout(Header({fields.begin(), fields.end()}, impl->where), impl->where));
+  config::CsvRow header;
+  TROCAR_TRY_STATUS(config::CsvReader(impl->text, impl->where).next(header));
+  for (std::string& name : header.fields) name = std::string(trimmed(name));
+  TROCAR_TRY(impl->layout, find_layout(Header(std::move(header.fields), impl->where), impl->where));
   std::size_t rows = 0;
   TROCAR_TRY_STATUS(impl->walk(impl->layers, [&](const Moment&) { ++rows; }));
   if (rows == 0) return fail("the table has no row of poses", impl->where, kAdvice);

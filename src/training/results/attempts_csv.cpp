@@ -9,8 +9,8 @@
 #include <fstream>
 #include <span>
 
+#include "config/csv.h"
 #include "core/files/output_file.h"
-#include "results/csv_text.h"
 #include "results/detail/attempt_query.h"
 #include "results/detail/csv_columns.h"
 
@@ -35,19 +35,19 @@ void append_fixed(std::string& text, const Attempt& a, const Person& person) {
     text += field;
     text += ',';
   };
-  add(csv_text(a.id));
-  add(csv_text(person.name));
+  add(config::csv_text(a.id));
+  add(config::csv_text(person.name));
   add(to_string(person.group));
   add(person.is_simulated ? "1" : "0");
-  add(csv_text(person.course));
-  add(csv_text(a.the_case.task));
-  add(csv_text(a.the_case.patient));
+  add(config::csv_text(person.course));
+  add(config::csv_text(a.the_case.task));
+  add(config::csv_text(a.the_case.patient));
   add(std::to_string(a.the_case.seed));
-  add(csv_text(a.the_case.patient_hash));
+  add(config::csv_text(a.the_case.patient_hash));
   add(a.the_case.difficulty ? std::to_string(*a.the_case.difficulty) : "");
-  add(csv_text(a.level));
-  add(csv_text(a.operator_name));
-  add(csv_text(a.station));
+  add(config::csv_text(a.level));
+  add(config::csv_text(a.operator_name));
+  add(config::csv_text(a.station));
   add(utc_text(a.started));
   add(to_string(a.state));
   if (a.score) append_number(text, *a.score);
@@ -55,7 +55,7 @@ void append_fixed(std::string& text, const Attempt& a, const Person& person) {
   add(a.is_passed ? "1" : "0");
   append_number(text, std::round(a.duration_s * kPerSecond) / kPerSecond);
   add("");
-  text += csv_text(a.program_version);
+  text += config::csv_text(a.program_version);
 }
 
 template <class Visit>
@@ -153,19 +153,19 @@ Result<AttemptsExport> AttemptsExport::begin(Repository& repository, const Attem
         (session.prepare << "SELECT DISTINCT part FROM attempt_parts ORDER BY part", soci::into(name));
     visit_rows(parts, [&] {
       begun.parts_[name] = names.size() - kAttemptColumns.size();
-      names.push_back(csv_text(fmt::format("{}{}", kPartColumn, name)));
-      names.push_back(csv_text(fmt::format("{}{}{}", kPartColumn, name, kOfMost)));
+      names.push_back(config::csv_text(fmt::format("{}{}", kPartColumn, name)));
+      names.push_back(config::csv_text(fmt::format("{}{}{}", kPartColumn, name, kOfMost)));
     });
     soci::statement metrics = (session.prepare << "SELECT id, name, unit FROM metrics ORDER BY name",
                                soci::into(metric), soci::into(name), soci::into(unit));
     visit_rows(metrics, [&] {
       begun.metrics_[metric] = names.size() - kAttemptColumns.size();
-      names.push_back(csv_text(metric_column(name, unit)));
+      names.push_back(config::csv_text(metric_column(name, unit)));
     });
     session << "SELECT coalesce(max(sequence), 0) FROM attempts", soci::into(last);
     begun.values_ = names.size() - kAttemptColumns.size();
     begun.last_ = last;
-    begun.header_ = csv_row(names);
+    begun.header_ = config::csv_row(names);
   }));
   return begun;
 }

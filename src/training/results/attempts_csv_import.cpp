@@ -8,13 +8,13 @@
 #include <type_traits>
 #include <unordered_map>
 
+#include "config/csv.h"
 #include "core/files/input_file.h"
 #include "core/text.h"
 #include "database/sqlite_cache.h"
 #include "learning/history.h"
 #include "metrics/metric.h"
 #include "results/attempts_csv.h"
-#include "results/csv_text.h"
 #include "results/detail/attempt_query.h"
 #include "results/detail/attempt_writer.h"
 #include "results/detail/csv_columns.h"
@@ -60,26 +60,25 @@ class AttemptRows {
       piece.resize(static_cast<std::size_t>(stream->gcount()));
       return piece;
     };
-    CsvReader reader(read, file.string());
-    TROCAR_TRY(std::optional<CsvRow> header, reader.next());
-    if (!header) return fail("the file is empty", file.string(), kUseExport);
-    TROCAR_TRY(CsvColumns columns, CsvColumns::read(*header, file.string()));
+    config::CsvReader reader(read, file.string());
+    config::CsvRow header;
+    TROCAR_TRY(const bool has_header, reader.next(header));
+    if (!has_header) return fail("the file is empty", file.string(), kUseExport);
+    TROCAR_TRY(CsvColumns columns, CsvColumns::read(header, file.string()));
     return AttemptRows(std::move(reader), std::move(columns), file.string());
   }
 
   /// Reads the next row; false: there is none. Error: another number of fields than in the header.
   Result<bool> next() {
-    TROCAR_TRY(std::optional<CsvRow> row, reader_.next());
-    if (!row) return false;
-    row_ = *std::move(row);
-    if (row_.fields.size() == columns_.size()) return true;
+    TROCAR_TRY(const bool has_row, reader_.next(row_));
+    if (!has_row || row_.fields.size() == columns_.size()) return has_row;
     return fail(fmt::format("the row has {} fields, the header {}", row_.fields.size(), columns_.size()), place(),
                 "put commas between the fields of a row, and decimal points into numbers");
   }
 
   std::size_t line() const { return row_.line; }
   const CsvColumns& columns() const { return columns_; }
-  std::string text(Column column) const { return plain_text(field(column)); }
+  std::string text(Column column) const { return config::plain_text(field(column)); }
   std::string place() const { return place_of_line(row_.line); }
   std::string place(std::string_view column) const { return fmt::format("{}, column {}", place(), column); }
   std::string place(Column column) const { return place(kAttemptColumns[static_cast<std::size_t>(column)]); }
@@ -108,7 +107,7 @@ class AttemptRows {
   }
 
  private:
-  AttemptRows(CsvReader reader, CsvColumns columns, std::string where)
+  AttemptRows(config::CsvReader reader, CsvColumns columns, std::string where)
       : reader_(std::move(reader)), columns_(std::move(columns)), where_(std::move(where)) {}
   const std::string& field(Column column) const {
     static const std::string kMissing;
@@ -116,10 +115,10 @@ class AttemptRows {
     return found ? row_.fields[*found] : kMissing;
   }
 
-  CsvReader reader_;
+  config::CsvReader reader_;
   CsvColumns columns_;
   std::string where_;
-  CsvRow row_;
+  config::CsvRow row_;
 };
 
 Status read_values(const AttemptRows& row, AttemptRecord& record) {

@@ -3,7 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include "results/csv_text.h"
+#include "config/csv.h"
 #include "results/detail/attempt_query.h"
 #include "results/repository.h"
 
@@ -98,7 +98,8 @@ Result<std::map<std::int64_t, std::int64_t>> count_notes(Repository& repository,
 Result<std::string> notes_csv(Repository& repository, const AttemptFilter& filter) {
   const AttemptQuery query = make_query(filter);
   return repository.database().run(kCannotReadNotes, [&](soci::session& session) {
-    std::string text = csv_row({"attempt", "person", "course", "task", "started_utc", "written_utc", "author", "note"});
+    std::string text =
+        config::csv_row({"attempt", "person", "course", "task", "started_utc", "written_utc", "author", "note"});
     std::string attempt, person, course, task, author, note;
     long long started_s = 0, written_s = 0;
     soci::statement select(session);
@@ -116,8 +117,9 @@ Result<std::string> notes_csv(Repository& repository, const AttemptFilter& filte
     select.define_and_bind();
     select.execute();
     while (select.fetch())
-      text += csv_row({attempt, csv_text(person), csv_text(course), csv_text(task), time_text(started_s),
-                       time_text(written_s), csv_text(author), csv_text(note)});
+      text += config::csv_row({attempt, config::csv_text(person), config::csv_text(course), config::csv_text(task),
+                               time_text(started_s), time_text(written_s), config::csv_text(author),
+                               config::csv_text(note)});
     return text;
   });
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "config/csv.h"
 #include "core/files/input_file.h"
 #include "core/files/output_file.h"
 #include "core/result.h"
@@ -80,42 +81,25 @@ OpenedDevice open_replay(const DeviceSpec& spec, const DeviceOptions& options) {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr std::string_view kHeader = "time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz";
+constexpr std::array<std::string_view, 8> kColumns{"time_s", "x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz"};
 constexpr const char* kRecordMotion = "write the file with trocar session motion";
 constexpr double kMostUneven = 0.01;  ///< Share of a step.
 constexpr double kRateUnit_hz = 1e-6;
 
 using Row = std::array<double, 8>;
 
-std::string_view take_line(std::string_view& text) {
-  const std::size_t end = std::min(text.find('\n'), text.size());
-  std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  return line;
-}
-
-std::string_view take_field(std::string_view& line) {
-  const std::size_t end = std::min(line.find(','), line.size());
-  const std::string_view field = line.substr(0, end);
-  line.remove_prefix(std::min(end + 1, line.size()));
-  return field;
-}
-
 /// Eight numbers. Error: the column and what is wrong with it.
-tl::expected<Row, std::string> parse_row(std::string_view line) {
+tl::expected<Row, std::string> parse_row(const config::CsvRow& text) {
   Row row;
-  const auto fields = 1 + std::ranges::count(line, ',');
-  if (fields != static_cast<std::ptrdiff_t>(row.size()))
+  if (text.fields.size() != row.size())
     return tl::unexpected(fmt::format("{} fields, not {}: commas separate them, numbers have a decimal point",
-                                      line.empty() ? 0 : fields, row.size()));
-  std::string_view names = kHeader;
-  for (double& value : row) {
-    const std::string_view name = take_field(names), field = take_field(line);
-    const auto number = parse_number<double>(field);
+                                      text.fields.size(), row.size()));
+  for (std::size_t n = 0; n < row.size(); ++n) {
+    const auto number = parse_number<double>(text.fields[n]);
     if (!number)
-      return tl::unexpected(fmt::format("column {}: '{}' is not a finite number", name, field.substr(0, 40)));
-    value = *number;
+      return tl::unexpected(
+          fmt::format("column {}: '{}' is not a finite number", kColumns[n], text.fields[n].substr(0, 40)));
+    row[n] = *number;
   }
   return row;
 }
@@ -131,24 +115,29 @@ std::optional<Pose> pose_of(const Row& row) {
 
 Result<RecordedMotion> read_motion(const fs::path& path) {
   TROCAR_TRY(const std::string bytes, read_input(path, FileKind::kOther));
-  std::string_view rest = bytes;
-  if (take_line(rest) != kHeader)
-    return fail(fmt::format("not a recorded motion: line 1 is not {}", kHeader), path.string(), kRecordMotion);
-  const auto damaged = [&](std::size_t line, const std::string& what) {
-    return fail(fmt::format("line {}: {}", line, what), path.string(), kRecordMotion);
+  config::CsvReader rows(bytes, path.string());
+  config::CsvRow text;
+  TROCAR_TRY(const bool has_header, rows.next(text));
+  if (!has_header || !std::ranges::equal(text.fields, kColumns))
+    return fail(fmt::format("not a recorded motion: line 1 is not {}", fmt::join(kColumns, ",")), path.string(),
+                kRecordMotion);
+  const auto damaged = [&](const std::string& what) {
+    return fail(fmt::format("line {}: {}", text.line, what), path.string(), kRecordMotion);
   };
   RecordedMotion motion;
   double first_s = 0.0, last_s = 0.0, step_s = 0.0;
-  for (std::size_t line = 2; !rest.empty(); ++line) {
-    const auto row = parse_row(take_line(rest));
-    if (!row) return damaged(line, row.error());
+  while (true) {
+    TROCAR_TRY(const bool has_row, rows.next(text));
+    if (!has_row) break;
+    const auto row = parse_row(text);
+    if (!row) return damaged(row.error());
     const auto pose = pose_of(*row);
-    if (!pose) return damaged(line, "column qw: the quaternion's length is not 1");
+    if (!pose) return damaged("column qw: the quaternion's length is not 1");
     const double time_s = row->front();
     if (motion.poses.empty()) first_s = time_s;
     if (motion.poses.size() == 1) step_s = time_s - first_s;
     if (!motion.poses.empty() && !(step_s > 0.0 && std::abs(time_s - last_s - step_s) <= kMostUneven * step_s))
-      return damaged(line, "column time_s: the steps in time are not equal");
+      return damaged("column time_s: the steps in time are not equal");
     last_s = time_s;
     motion.poses.push_back(*pose);
   }
@@ -159,8 +148,7 @@ Result<RecordedMotion> read_motion(const fs::path& path) {
 }
 
 Status write_motion(const RecordedMotion& motion, const fs::path& path) {
-  std::string text(kHeader);
-  text += '\n';
+  std::string text = fmt::format("{}\n", fmt::join(kColumns, ","));
   for (std::size_t n = 0; n < motion.poses.size(); ++n) {
     const Vec3& p = motion.poses[n].p();
     const Eigen::Quaterniond q(motion.poses[n].R());

@@ -13,6 +13,19 @@ namespace {
 
 constexpr double kLongest_s = 86400.0;
 
+/// The parts between separators; of an empty text one empty part.
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  std::size_t begin = 0;
+  for (std::size_t n = 0; n < text.size(); ++n) {
+    if (text[n] != separator) continue;
+    parts.push_back(text.substr(begin, n - begin));
+    begin = n + 1;
+  }
+  parts.push_back(text.substr(begin));
+  return parts;
+}
+
 bool is_limit(std::string_view name) {
   if (name == "unknown") return true;  // of a newer program
   for (int n = 0; n <= static_cast<int>(telemetry::kLastLimitReason); ++n)

@@ -136,9 +136,9 @@ TEST_F(PoseCsv, RefusesInvalidNumbersPhasesAndEvents) {
            {"0,0,0,0,0,0,1,1,,incomplete:1", "line 2: column event: 'incomplete:1': it has no value"},
            {"0,0,0,0,0,0,1,1,,puncture:a;puncture:b;puncture:c;puncture:d;puncture:e",
             "line 2: column event: more than 4 punctures in a row"},
-           {"0,0,0,0,0,0,1,1,,\"puncture:skin", "line 2: field 10: a quotation does not end"},
-           {"0,\"0\"1,0,0,0,0,1,1,,", "line 2: field 2: text after a quotation"},
-           {"0,0,0,0,0,0,1,1,,puncture:\"skin\"", "line 2: field 10: a quotation mark inside of a field"},
+           {"0,0,0,0,0,0,1,1,,\"puncture:skin", "a quotation does not end"},
+           {"0,\"0\"1,0,0,0,0,1,1,,", "text after a quotation"},
+           {"0,0,0,0,0,0,1,1,,puncture:\"skin\"", "a quotation mark inside of a field"},
        })
     EXPECT_EQ(refused(header + c.row + "\n"), c.what) << c.row;
   EXPECT_EQ(refused("time_s;tip_x_mm\n0;0\n"), "line 1: missing column time_s");

@@ -58,10 +58,10 @@ std::string metric_column(std::string_view name, std::string_view unit) {
   return fmt::format("{}{}{}{})", kMetricColumn, name, kBeforeUnit, unit);
 }
 
-Result<CsvColumns> CsvColumns::read(const CsvRow& header, const std::string& where) {
+Result<CsvColumns> CsvColumns::read(const config::CsvRow& header, const std::string& where) {
   const std::string place = fmt::format("{}, line {}", where, header.line);
   CsvColumns columns;
-  for (const std::string& field : header.fields) columns.names_.push_back(plain_text(field));
+  for (const std::string& field : header.fields) columns.names_.push_back(config::plain_text(field));
   TROCAR_TRY_STATUS(columns.place_names(place));
   TROCAR_TRY_STATUS(columns.add_metrics(place));
   TROCAR_TRY_STATUS(columns.check_complete(where));

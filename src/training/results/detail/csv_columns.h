@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "config/csv.h"
 #include "metrics/metric.h"
 #include "results/attempt.h"
-#include "results/csv_text.h"
 
 namespace trocar::results::detail {
 
@@ -49,7 +49,7 @@ class CsvColumns {
  public:
   /// Reads the first row. Errors: an unknown, missing or repeated column, a metric in another unit or one that is
   /// spelled almost like one of the catalogue.
-  static Result<CsvColumns> read(const CsvRow& header, const std::string& where);
+  static Result<CsvColumns> read(const config::CsvRow& header, const std::string& where);
 
   struct Part {
     std::string name;

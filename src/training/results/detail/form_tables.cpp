@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "results/csv_text.h"
+#include "config/csv.h"
 #include "results/detail/attempt_query.h"
 
 namespace trocar::results::detail {
@@ -201,9 +201,9 @@ std::string write_answers(soci::session& session, const std::string& form_id) {
   std::vector<std::string> row{"submitted_utc"};
   for (const ItemSummary& summary : items) {
     columns[summary.item.id] = row.size();
-    row.push_back(csv_text(summary.item.text));
+    row.push_back(config::csv_text(summary.item.text));
   }
-  std::string text = csv_row(row);
+  std::string text = config::csv_row(row);
   std::string response, item, answer, current;
   int points = 0;
   long long submitted_s = 0;
@@ -215,15 +215,15 @@ std::string write_answers(soci::session& session, const std::string& form_id) {
   select.execute();
   while (select.fetch()) {
     if (response != current) {
-      if (!current.empty()) text += csv_row(row);
+      if (!current.empty()) text += config::csv_row(row);
       current = response;
       row.assign(items.size() + 1, "");
       row[0] = fmt::format("{:%FT%TZ}", fmt::gmtime(static_cast<std::time_t>(submitted_s)));
     }
     if (const auto column = columns.find(item); column != columns.end())
-      row[column->second] = points > 0 ? std::to_string(points) : csv_text(answer);
+      row[column->second] = points > 0 ? std::to_string(points) : config::csv_text(answer);
   }
-  if (!current.empty()) text += csv_row(row);
+  if (!current.empty()) text += config::csv_row(row);
   return text;
 }
 

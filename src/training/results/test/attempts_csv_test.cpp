@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "results/csv_text.h"
+#include "config/csv.h"
 #include "results_lab.h"
 
 namespace trocar::results {
@@ -15,10 +15,10 @@ TROCAR_BOTH_DATABASES(AttemptsCsv);
 TEST(CsvText, RoundTripsAndIsNeverAFormula) {
   for (const std::string text :
        {"plain", "a,b", "say \"a\"", "two\nlines", "=1+1", "-5", "@x", "'apostrophe", "\ttab", ""}) {
-    const std::string field = csv_text(text);
-    const auto rows = parse_csv(csv_row({"x", field}), "test");
+    const std::string field = config::csv_text(text);
+    const auto rows = config::parse_csv(config::csv_row({"x", field}), "test");
     ASSERT_TRUE(rows) << text;
-    EXPECT_EQ(plain_text(rows->front().fields[1]), text);
+    EXPECT_EQ(config::plain_text(rows->front().fields[1]), text);
     if (!text.empty()) {
       EXPECT_EQ(std::string_view("=+-@\t").find(rows->front().fields[1].front()), std::string_view::npos) << text;
     }
@@ -35,14 +35,16 @@ TEST(CsvText, ErrorsNameLineAndField) {
            {"\"a\"b", "text after a quotation — file, line 1, field 1"},
            {"a,b\n\nc,d\"e\n", "a quotation mark inside of a field — file, line 3, field 2"},
            {"\"two\nlines\",b\nx\"", "a quotation mark inside of a field — file, line 3, field 1"},
+           {"a, \"b\" ,\"c\" d", "text after a quotation — file, line 1, field 3"},
            {std::string("a\0b", 3), "it is no text — file, line 1, field 1"},
        }) {
-    const auto rows = parse_csv(c.text, "file");
+    const auto rows = config::parse_csv(c.text, "file");
     ASSERT_FALSE(rows) << c.text;
     EXPECT_TRUE(rows.error().text().starts_with(c.error)) << rows.error().text();
   }
-  const auto rows = parse_csv("\"two\nlines\",b\n\nc,d\n", "file");
+  const auto rows = config::parse_csv("\"two\nlines\", \"b\" \n\nc,d\n", "file");
   ASSERT_TRUE(rows);
+  EXPECT_EQ(rows->at(0).fields[1], "b") << "spaces around a quotation";
   EXPECT_EQ(rows->at(1).line, 4u);
 }
 
@@ -207,7 +209,7 @@ TEST_P(AttemptsCsv, NamesLineAndColumnOfEveryError) {
   put(attempt(anna.id, 50.0));
   const auto good = attempts_csv(*repository_, {});
   ASSERT_TRUE(good);
-  const auto rows = parse_csv(*good, "good");
+  const auto rows = config::parse_csv(*good, "good");
   ASSERT_TRUE(rows && rows->size() == 2);
   const std::vector<std::string>& names = rows->front().fields;
   const auto import = [&](const std::string& text) {
@@ -263,7 +265,7 @@ TEST_P(AttemptsCsv, NamesLineAndColumnOfEveryError) {
     row[static_cast<std::size_t>(column - names.begin())] = c.value;
     for (std::string& field : row)
       if (field.find_first_of(",\n") != std::string::npos) field = "\"" + field + "\"";
-    const std::string error = import(csv_row(names) + csv_row(row));
+    const std::string error = import(config::csv_row(names) + config::csv_row(row));
     EXPECT_NE(error.find(c.error), std::string::npos) << c.column << "=" << c.value << ": " << error;
     EXPECT_NE(error.find("changed.csv, line 2, column "), std::string::npos) << error;
   }

@@ -3,9 +3,9 @@
 
 #include <fstream>
 
+#include "config/csv.h"
 #include "core/random.h"
 #include "results/attempts_csv.h"
-#include "results/csv_text.h"
 #include "results_lab.h"
 
 namespace trocar::results {
@@ -69,13 +69,13 @@ TEST(CsvText, RoundTripsHostileTextForAnySeparator) {
   HostileTexts texts(11);
   for (int round = 0; round < 5000; ++round) {
     const std::string first = texts.next(), second = texts.next();
-    const std::string row = csv_row({csv_text(first), csv_text(second)});
-    const auto rows = parse_csv(row, "test");
+    const std::string row = config::csv_row({config::csv_text(first), config::csv_text(second)});
+    const auto rows = config::parse_csv(row, "test");
     ASSERT_TRUE(rows) << rows.error().text();
     ASSERT_EQ(rows->size(), 1u);
     ASSERT_EQ(rows->front().fields.size(), 2u) << row;
-    EXPECT_EQ(plain_text(rows->front().fields[0]), first);
-    EXPECT_EQ(plain_text(rows->front().fields[1]), second);
+    EXPECT_EQ(config::plain_text(rows->front().fields[0]), first);
+    EXPECT_EQ(config::plain_text(rows->front().fields[1]), second);
     expect_no_formula(row, ",\n\r");
     expect_no_formula(row, ";\n\r");
     expect_no_formula(row, "\t\n\r");
@@ -87,27 +87,31 @@ TEST(CsvText, ParsesChunksOfAnySize) {
       "\xef\xbb\xbf"
       "a,\"b\"\"c\nd\"\r\n\r\n\"\",e\n";
   for (std::size_t size = 1; size < text.size(); ++size) {
-    CsvReader reader(
+    config::CsvReader reader(
         [&, at = std::size_t{0}]() mutable -> Result<std::string> {
           const std::string piece = text.substr(std::min(at, text.size()), size);
           at += size;
           return piece;
         },
         "test");
-    EXPECT_EQ(reader.next().value()->fields, (std::vector<std::string>{"a", "b\"c\nd"})) << size;
-    EXPECT_EQ(reader.next().value()->fields, (std::vector<std::string>{"", "e"})) << size;
-    EXPECT_FALSE(reader.next().value()) << size;
+    config::CsvRow row;
+    EXPECT_TRUE(reader.next(row).value());
+    EXPECT_EQ(row.fields, (std::vector<std::string>{"a", "b\"c\nd"})) << size;
+    EXPECT_TRUE(reader.next(row).value());
+    EXPECT_EQ(row.fields, (std::vector<std::string>{"", "e"})) << size;
+    EXPECT_FALSE(reader.next(row).value()) << size;
   }
 }
 
 TEST(CsvText, RefusesAnEndlessRow) {
-  CsvReader quotation([]() -> Result<std::string> { return "\"" + std::string(1 << 20, 'x'); }, "file");
-  EXPECT_FALSE(quotation.next());
-  CsvReader fields([]() -> Result<std::string> { return std::string(1 << 20, ','); }, "file");
-  const auto row = fields.next();
-  ASSERT_FALSE(row);
-  EXPECT_NE(row.error().what.find("fields"), std::string::npos);
-  const auto nul = parse_csv(std::string("a,\"b\0c\"\n", 8), "file");
+  config::CsvReader quotation([]() -> Result<std::string> { return "\"" + std::string(1 << 20, 'x'); }, "file");
+  config::CsvRow row;
+  EXPECT_FALSE(quotation.next(row));
+  config::CsvReader fields([]() -> Result<std::string> { return std::string(1 << 20, ','); }, "file");
+  const auto endless = fields.next(row);
+  ASSERT_FALSE(endless);
+  EXPECT_NE(endless.error().what.find("fields"), std::string::npos);
+  const auto nul = config::parse_csv(std::string("a,\"b\0c\"\n", 8), "file");
   ASSERT_FALSE(nul);
   EXPECT_EQ(nul.error().where, "file, line 1, field 2");
 }
@@ -196,11 +200,11 @@ TEST_P(CsvIdentity, StreamedExportHasEveryAttemptOnce) {
     records.back().trace = {};
   }
   ASSERT_TRUE(record_attempts(*repository_, records));
-  const auto rows = parse_csv(attempts_csv(*repository_, {}).value(), "test");
+  const auto rows = config::parse_csv(attempts_csv(*repository_, {}).value(), "test");
   ASSERT_TRUE(rows);
   ASSERT_EQ(rows->size(), records.size() + 1);
   for (std::size_t n = 0; n < records.size(); ++n) EXPECT_EQ((*rows)[n + 1].fields[0], records[n].attempt.id);
-  EXPECT_EQ(parse_csv(attempts_csv(*repository_, {ben.id}).value(), "test")->size(), 401u + 1);
+  EXPECT_EQ(config::parse_csv(attempts_csv(*repository_, {ben.id}).value(), "test")->size(), 401u + 1);
 }
 
 /// A deletion while a slow client reads: what was not sent yet is gone.

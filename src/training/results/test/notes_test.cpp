@@ -2,8 +2,8 @@
 
 #include <fstream>
 
+#include "config/csv.h"
 #include "results/attempt.h"
-#include "results/csv_text.h"
 #include "results/people.h"
 #include "results/repository.h"
 #include "results_lab.h"
@@ -81,8 +81,9 @@ TEST_P(Notes, AreCountedExportedAndDeletedWithThePerson) {
   EXPECT_EQ(count_notes(*repository_, anna.id).value(), (std::map<std::int64_t, std::int64_t>{{sequence, 2}}));
   const std::string csv = notes_csv(*repository_, {{}, {}, "spring"}).value();
   const auto row = [&](const char* text) {
-    return csv_row({first.attempt.id, csv_text("=Anna"), csv_text("Spring"), csv_text("liver-biopsy"),
-                    "2026-05-28T20:26:40Z", "2026-05-28T20:26:40Z", csv_text("huber"), csv_text(text)});
+    return config::csv_row({first.attempt.id, config::csv_text("=Anna"), config::csv_text("Spring"),
+                            config::csv_text("liver-biopsy"), "2026-05-28T20:26:40Z", "2026-05-28T20:26:40Z",
+                            config::csv_text("huber"), config::csv_text(text)});
   };
   EXPECT_EQ(csv, "attempt,person,course,task,started_utc,written_utc,author,note\r\n" + row("one") + row("two"));
   ASSERT_TRUE(delete_person(*repository_, anna.id));

@@ -54,13 +54,13 @@ TEST_F(ReplayFile, NamesTheLineThatIsDamaged) {
     const char *row, *what;
   };
   for (const Case& c : std::vector<Case>{
-           {"", "line 3: 0 fields, not 8: commas separate them, numbers have a decimal point"},
+           {"", "fewer than two poses"},
            {"0.001,1.0x,2,3,1,0,0,0", "line 3: column x_mm: '1.0x' is not a finite number"},
            {"0.001,1,inf,3,1,0,0,0", "line 3: column y_mm: 'inf' is not a finite number"},
            {"0.001,1,2,,1,0,0,0", "line 3: column z_mm: '' is not a finite number"},
            {"0.001,1,2,3,1,0,0, 0", "line 3: column qz: ' 0' is not a finite number"},
            {"0.001,1e999,2,3,1,0,0,0", "line 3: column x_mm: '1e999' is not a finite number"},
-           {"\"0.001\",1,2,3,1,0,0,0", "line 3: column time_s: '\"0.001\"' is not a finite number"},
+           {"\"0.001,1,2,3,1,0,0,0", "a quotation does not end"},
            {"0,001,1,2,3,1,0,0,0", "line 3: 9 fields, not 8: commas separate them, numbers have a decimal point"},
        })
     EXPECT_EQ(refusal(kHeader + first + c.row + "\n"), c.what) << c.row;

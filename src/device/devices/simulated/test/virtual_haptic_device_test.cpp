@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 #include "devices/test/server_periods.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 #include "haptics/test/layered_patient.h"
 #include "haptics/tick.h"
 

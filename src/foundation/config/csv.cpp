@@ -1,4 +1,4 @@
-#include "results/csv_text.h"
+#include "config/csv.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "core/text.h"
 
-namespace trocar::results {
+namespace trocar::config {
 namespace {
 
 constexpr const char* kCheckQuotes = "check the quotes";
@@ -34,7 +34,17 @@ std::string plain_text(std::string_view field) {
   return without_formula_guards(field);
 }
 
-std::optional<char> CsvReader::peek(std::size_t distance) {
+CsvReader::CsvReader(std::string_view text, std::string where)
+    : CsvReader(
+          [rest = text]() mutable -> Result<std::string> {
+            constexpr std::size_t kPiece = std::size_t{64} << 10;
+            std::string piece(rest.substr(0, kPiece));
+            rest.remove_prefix(piece.size());
+            return piece;
+          },
+          std::move(where)) {}
+
+bool CsvReader::fill(std::size_t distance) {
   while (at_ + distance >= buffer_.size() && !is_ended_) {
     buffer_.erase(0, at_);
     at_ = 0;
@@ -43,7 +53,7 @@ std::optional<char> CsvReader::peek(std::size_t distance) {
     is_ended_ = !piece || piece->empty();
     if (piece) buffer_ += *piece;
   }
-  return at_ + distance < buffer_.size() ? std::optional(buffer_[at_ + distance]) : std::nullopt;
+  return at_ + distance < buffer_.size();
 }
 
 tl::unexpected<Error> CsvReader::refuse(std::string what, const char* advice) const {
@@ -67,8 +77,11 @@ Status CsvReader::take_until(std::string& field, std::string_view ends) {
   return fault_;
 }
 
-Result<std::string> CsvReader::read_quoted() {
-  std::string field;
+void CsvReader::skip_spaces() {
+  while (is_next(' ') || is_next('\t')) ++at_;
+}
+
+Status CsvReader::read_quoted(std::string& field) {
   for (++at_;; ++at_) {
     TROCAR_TRY_STATUS(take_until(field, "\""));
     if (!peek()) return refuse("a quotation does not end", kCheckQuotes);
@@ -78,59 +91,65 @@ Result<std::string> CsvReader::read_quoted() {
     field += '"';
   }
   ++at_;
+  skip_spaces();
   if (!is_field_end()) return refuse("text after a quotation", kCheckQuotes);
-  return field;
+  return {};
 }
 
-Result<std::string> CsvReader::read_plain() {
-  std::string field;
+Status CsvReader::read_field(std::string& field) {
+  field.clear();
+  if (is_next('"')) return read_quoted(field);
   TROCAR_TRY_STATUS(take_until(field, ",\r\n\""));
-  if (is_next('"')) return refuse("a quotation mark inside of a field", kCheckQuotes);
-  return field;
+  if (!is_next('"')) return {};
+  if (field.find_first_not_of(" \t") != std::string::npos)
+    return refuse("a quotation mark inside of a field", kCheckQuotes);
+  field.clear();
+  return read_quoted(field);
 }
 
-Result<CsvRow> CsvReader::read_row() {
-  CsvRow row{line_, {}};
+Status CsvReader::read_row(CsvRow& row) {
+  row.line = line_;
   row_bytes_ = 0;
+  std::size_t fields = 0;
   for (bool has_more = true; has_more;) {
-    field_ = row.fields.size() + 1;
+    if (fields == row.fields.size()) row.fields.emplace_back();
+    field_ = fields + 1;
     field_line_ = line_;
-    TROCAR_TRY(row.fields.emplace_back(), is_next('"') ? read_quoted() : read_plain());
+    TROCAR_TRY_STATUS(read_field(row.fields[fields++]));
     has_more = is_next(',');
     if (has_more) ++at_;
-    if (has_more && row.fields.size() >= kMostFields)
-      return refuse(fmt::format("the row has more than {} fields", kMostFields), "use a file of trocar results export");
+    if (has_more && fields >= kMostFields)
+      return refuse(fmt::format("the row has more than {} fields", kMostFields), "put commas between fields only");
   }
+  row.fields.resize(fields);
   if (is_next('\r')) ++at_;
   if (is_next('\n')) ++at_;
   ++line_;
-  TROCAR_TRY_STATUS(fault_);
-  return row;
+  return fault_;
 }
 
-Result<std::optional<CsvRow>> CsvReader::next() {
+Result<bool> CsvReader::next(CsvRow& row) {
   if (!has_begun_) {
     has_begun_ = true;
     peek(kByteOrderMark.size());
     if (std::string_view(buffer_).starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
   }
   while (peek()) {
-    TROCAR_TRY(CsvRow row, read_row());
-    if (row.fields.size() > 1 || !row.fields.front().empty()) return std::optional(std::move(row));
+    TROCAR_TRY_STATUS(read_row(row));
+    if (row.fields.size() > 1 || !row.fields.front().empty()) return true;
   }
   TROCAR_TRY_STATUS(fault_);
-  return std::optional<CsvRow>();
+  return false;
 }
 
 Result<std::vector<CsvRow>> parse_csv(std::string_view text, const std::string& where) {
-  CsvReader reader([rest = std::string(text)]() mutable -> Result<std::string> { return std::exchange(rest, {}); },
-                   where);
+  CsvReader reader(text, where);
   std::vector<CsvRow> rows;
-  while (true) {
-    TROCAR_TRY(std::optional<CsvRow> row, reader.next());
-    if (!row) return rows;
-    rows.push_back(*std::move(row));
+  for (CsvRow row;;) {
+    TROCAR_TRY(const bool has_row, reader.next(row));
+    if (!has_row) return rows;
+    rows.push_back(row);
   }
 }
 
-}  // namespace trocar::results
+}  // namespace trocar::config

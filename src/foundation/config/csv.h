@@ -8,7 +8,7 @@
 
 #include "core/result.h"
 
-namespace trocar::results {
+namespace trocar::config {
 
 /// A text as a field of a CSV file (RFC 4180): always in quotation marks, and with the apostrophes of
 /// core/text.h, so that no spreadsheet takes it or a part of it for a formula.
@@ -24,8 +24,8 @@ struct CsvRow {
   std::vector<std::string> fields;
 };
 
-/// Reads a CSV file row by row. A longer row than kMostRowBytes is refused, so that a quotation that does not end takes
-/// no more memory.
+/// Reads a CSV file row by row: RFC 4180, with or without a byte order mark; spaces around a quotation are left out. A
+/// longer row than kMostRowBytes is refused, so that a quotation that does not end takes no more memory.
 class CsvReader {
  public:
   static constexpr std::size_t kMostRowBytes = std::size_t{16} << 20;
@@ -34,17 +34,24 @@ class CsvReader {
 
   /// `where`: the file, for messages.
   CsvReader(Source source, std::string where) : source_(std::move(source)), where_(std::move(where)) {}
+  /// Of a text, which outlives it.
+  CsvReader(std::string_view text, std::string where);
 
-  /// The next row that is not empty; nothing: the end. Error: a quotation that does not end, text after a quotation, a
-  /// quotation mark inside of a field, a NUL byte, a row that is too long; with line and field. Errors of the source.
-  Result<std::optional<CsvRow>> next();
+  /// Reads the next row that is not empty; false: the end. Error: a quotation that does not end, text after a
+  /// quotation, a quotation mark inside of a field, a NUL byte, a row that is too long; with line and field. Errors of
+  /// the source. Call it with the same row again: its memory is used again.
+  Result<bool> next(CsvRow& row);
 
  private:
-  Result<CsvRow> read_row();
-  Result<std::string> read_quoted();
-  Result<std::string> read_plain();
+  Status read_row(CsvRow& row);
+  Status read_field(std::string& field);
+  Status read_quoted(std::string& field);
+  void skip_spaces();
   /// The character at a distance; empty: the end of the file, or an error, which `fault_` keeps.
-  std::optional<char> peek(std::size_t distance = 0);
+  std::optional<char> peek(std::size_t distance = 0) {
+    return at_ + distance < buffer_.size() || fill(distance) ? std::optional(buffer_[at_ + distance]) : std::nullopt;
+  }
+  bool fill(std::size_t distance);
   bool is_next(char c) { return peek() == c; }
   bool is_field_end() { return !peek() || is_next(',') || is_next('\r') || is_next('\n'); }
   Status take_until(std::string& field, std::string_view ends);
@@ -62,4 +69,4 @@ class CsvReader {
 /// All rows of a text.
 Result<std::vector<CsvRow>> parse_csv(std::string_view text, const std::string& where);
 
-}  // namespace trocar::results
+}  // namespace trocar::config
