@@ -1,5 +1,6 @@
 #include "metrics/measure_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -37,6 +38,15 @@ Roles roles_of(const MetricContext& context) {
   return roles;
 }
 
+AttemptTrack::Facts facts_of(const MetricContext& context) {
+  AttemptTrack::Facts facts{context.patient, {}, context.end_s, {}};
+  const auto skin = std::ranges::find(context.layer_names, "skin");
+  const auto id = skin - context.layer_names.begin();
+  if (skin != context.layer_names.end() && id <= 255) facts.skin_layer = static_cast<std::uint8_t>(id);
+  for (const ExpertPath& path : context.expert_paths) facts.target_points_P.push_back(path.line_P.b);
+  return facts;
+}
+
 std::optional<Role> find_missing(const Roles& wanted, const Roles& given) noexcept {
   for (unsigned n = 0; n <= static_cast<unsigned>(kLastRole); ++n)
     if (const auto role = static_cast<Role>(n); wanted.has(role) && !given.has(role)) return role;
@@ -57,7 +67,8 @@ bool context_serves(const MetricGroup& group, const Roles& given) noexcept {
 
 }  // namespace
 
-MeasureRun::MeasureRun(MetricContext context) : context_(std::move(context)), roles_(roles_of(context_)) {
+MeasureRun::MeasureRun(MetricContext context)
+    : context_(std::move(context)), roles_(roles_of(context_)), track_(facts_of(context_)) {
   for (const MetricGroup& group : metric_groups())
     metrics_.push_back(context_serves(group, roles_) ? group.make(context_) : nullptr);
 }
@@ -111,67 +122,26 @@ void MeasureRun::step(const Moment& given) {
   const double dt_s = is_joined ? moment.time_s - before_->time_s : 0.0;
   active_s_ += dt_s;
   const Step step{moment, is_joined ? &*before_ : nullptr, dt_s, active_s_};
-  follow_entry(step);
-  follow_end(step);
+  track_.step(moment);
   for (const auto& metric : metrics_)
     if (metric) metric->step(step);
   before_ = moment;
 }
 
-void MeasureRun::follow_entry(const Step& step) {
-  const Moment& now = step.now;
-  if (!step.is_inside()) {
-    is_entered_ = false;
-    return;
-  }
-  bool enters = !is_entered_ && now.phase != telemetry::InsertionPhase::kLoading;
-  if (now.events)
-    for (const telemetry::TickEvent& event : *now.events) {
-      const std::string* layer = context_.layer_name(event.id);
-      enters = enters || (event.kind == telemetry::EventKind::kPuncture && layer != nullptr && *layer == "skin");
-    }
-  if (!enters) return;
-  is_entered_ = true;
-  entry_P_ = now.tip_A() - *now.depth_mm * now.axis_A();
-}
-
-void MeasureRun::follow_end(const Step& step) {
-  const Moment& now = step.now;
-  if (is_over_) return;
-  const auto take = [&] {
-    end_ = now;
-    end_entry_P_ = step.is_inside() ? entry_P_ : std::nullopt;
-  };
-  if (context_.end_s && now.time_s >= *context_.end_s) {
-    is_over_ = true;
-    return take();
-  }
-  if (now.depth_mm) {
-    if (*now.depth_mm > 0.0 && (!end_ || !end_->depth_mm || *now.depth_mm > *end_->depth_mm)) take();
-    return;
-  }
-  if (end_ && end_->depth_mm) return;
-  double nearest_mm = std::numeric_limits<double>::infinity();
-  for (const ExpertPath& path : context_.expert_paths)
-    nearest_mm = std::min(nearest_mm, (path.line_P.b - now.tip_A()).norm());
-  if (std::isfinite(nearest_mm) && (!end_ || nearest_mm < nearest_mm_)) {
-    nearest_mm_ = nearest_mm;
-    take();
-  }
-}
-
 RunEnd MeasureRun::end() const {
   RunEnd end;
-  if (!end_) return end;
-  end.moment = end_;
-  end.entry_P = end_entry_P_;
-  if (end_->depth_mm && *end_->depth_mm > 0.0)
-    end.inserted_P = Segment{end_->tip_A() - *end_->depth_mm * end_->axis_A(), end_->tip_A()};
+  if (!track_.end()) return end;
+  const Moment& last = track_.end()->moment;
+  end.moment = last;
+  if (last.depth_mm && *last.depth_mm > 0.0) {
+    if (const auto& entry = track_.end()->entry) end.entry_P = track_.skin_crossing_A(*entry);
+    end.inserted_P = Segment{last.tip_A() - *last.depth_mm * last.axis_A(), last.tip_A()};
+  }
   double nearest_mm = std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < context_.expert_paths.size(); ++n) {
     const Segment& line_P = context_.expert_paths[n].line_P;
     const double apart_mm =
-        end.inserted_P ? detail::piece_distance(*end.inserted_P, line_P).mean_mm : (end_->tip_A() - line_P.b).norm();
+        end.inserted_P ? detail::piece_distance(*end.inserted_P, line_P).mean_mm : (last.tip_A() - line_P.b).norm();
     if (apart_mm >= nearest_mm) continue;
     nearest_mm = apart_mm;
     end.expert = n;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "metrics/attempt_track.h"
 #include "metrics/metric.h"
 
 namespace trocar::metrics {
@@ -27,8 +28,6 @@ class MeasureRun {
  private:
   bool complete(Moment& moment) const;
   void note_roles(const Moment& moment);
-  void follow_entry(const Step& step);
-  void follow_end(const Step& step);
   void report_group(std::size_t group, const RunEnd& end, std::span<MetricValue> values) const;
 
   MetricContext context_;
@@ -38,12 +37,7 @@ class MeasureRun {
   double active_s_ = 0.0;
   std::size_t moments_ = 0, left_out_ = 0;
   bool has_pause_ = false;
-  bool is_entered_ = false;
-  std::optional<Vec3> entry_P_;  ///< Of the present insertion.
-  std::optional<Moment> end_;
-  std::optional<Vec3> end_entry_P_;
-  bool is_over_ = false;
-  double nearest_mm_ = 0.0;  ///< Without depth: of the end to the end of an expert path.
+  AttemptTrack track_;
 };
 
 }  // namespace trocar::metrics

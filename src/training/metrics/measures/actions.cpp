@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "metrics/attempt_metrics.h"
+#include "metrics/attempt_track.h"
 #include "metrics/detail/uniform_sampler.h"
 #include "metrics/measures/groups.h"
 

@@ -164,9 +164,11 @@ Judgement judge(const AttemptData& attempt, std::size_t& expert) {
                          attempt.task.confirmed_by};
   const std::optional<double> confirmed_s = confirmation_s(end_data);
   const std::optional<std::size_t> end = end_of_attempt(end_data);
+  const metrics::AttemptTrack track =
+      metrics::follow_attempt(attempt.patient, attempt.tissues, attempt.samples,
+                              end ? std::optional(attempt.samples[*end].time_s) : std::nullopt);
   const auto measure = [&](const tasks::PlannedPath& path) {
-    return metrics::measure_attempt(attempt.patient, attempt.tissues, path, attempt.samples, end,
-                                    attempt.interruptions);
+    return metrics::measure_against(path, track, attempt.interruptions);
   };
   metrics::AttemptMetrics metrics = measure(attempt.experts.front());
   expert = metrics.has_entered ? nearest_expert(attempt, metrics) : 0;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "metrics/attempt_metrics.h"
+#include "metrics/attempt_track.h"
 #include "metrics/harm_watch.h"
 #include "scoring/pain.h"
 #include "scoring/score.h"

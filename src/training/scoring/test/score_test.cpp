@@ -261,8 +261,10 @@ TEST(Hints, DistinguishOvershootFromRetraction) {
 
   // In to 45 mm, out to 5 mm, in to the target: 40 mm are travelled twice.
   Attempt attempt = make_attempt(make_box_plan().line_P);
+  double time_s = attempt.samples[attempt.fired].time_s;
   const auto sample_at = [&](double depth_mm) {
     telemetry::TickSample sample = attempt.samples[attempt.fired];
+    sample.time_s = time_s += 0.001;
     sample.depth_mm = depth_mm;
     sample.tip_mm.y() = depth_mm;
     return sample;

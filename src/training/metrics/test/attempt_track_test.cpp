@@ -1,4 +1,4 @@
-#include "metrics/attempt_metrics.h"
+#include "metrics/attempt_track.h"
 
 #include <gtest/gtest.h>
 
@@ -14,10 +14,11 @@ using namespace testing;
 
 AttemptMetrics measure_in_box(const std::vector<telemetry::TickSample>& samples, std::optional<std::size_t> fired) {
   static const anatomy::VirtualPatient patient = make_box_patient();
-  return measure_attempt(patient, make_box_tissues(), make_box_plan(), samples, fired);
+  const auto end_s = fired ? std::optional(samples[*fired].time_s) : std::nullopt;
+  return measure_against(make_box_plan(), follow_attempt(patient, make_box_tissues(), samples, end_s));
 }
 
-TEST(Metrics, APlannedAttemptHasNoDeviations) {
+TEST(AttemptTrack, APlannedAttemptHasNoDeviations) {
   for (const double dent_mm : {0.6, 4.5}) {  // skin that gives way late is no error of the entry
     const Attempt attempt = make_attempt(make_box_plan().line_P, dent_mm);
     const AttemptMetrics metrics = measure_in_box(attempt.samples, attempt.fired);
@@ -31,7 +32,7 @@ TEST(Metrics, APlannedAttemptHasNoDeviations) {
   }
 }
 
-TEST(Metrics, OffsetsAreActualMinusPlannedPositions) {
+TEST(AttemptTrack, OffsetsAreActualMinusPlannedPositions) {
   const double angle = radians(5.0);
   const Vec3 entry_P(53.0, 0.0, 46.0);
   const Attempt attempt = make_attempt({entry_P, entry_P + 40.0 * Vec3(std::sin(angle), std::cos(angle), 0.0)});
@@ -42,7 +43,7 @@ TEST(Metrics, OffsetsAreActualMinusPlannedPositions) {
             1e-6);
 }
 
-TEST(Metrics, CountsPullingBackButNotTremorAsTravel) {
+TEST(AttemptTrack, CountsPullingBackButNotTremorAsTravel) {
   std::vector<telemetry::TickSample> samples = make_attempt({{50.0, 0.0, 50.0}, {50.0, 40.0, 50.0}}).samples;
   samples.resize(45 * 50);  // up to a depth of 40 mm
   const auto add = [&](double depth_mm) {
@@ -59,7 +60,7 @@ TEST(Metrics, CountsPullingBackButNotTremorAsTravel) {
   EXPECT_NEAR(measure_in_box(samples, {}).travel_mm, 40.0 + 20.0, 0.2);
 }
 
-TEST(Metrics, UsesDepthForEntryWithoutPunctureEvents) {
+TEST(AttemptTrack, UsesDepthForEntryWithoutPunctureEvents) {
   Attempt attempt = make_attempt(make_box_plan().line_P);
   for (telemetry::TickSample& sample : attempt.samples) sample.events = {};
   const AttemptMetrics metrics = measure_in_box(attempt.samples, attempt.fired);
@@ -68,7 +69,7 @@ TEST(Metrics, UsesDepthForEntryWithoutPunctureEvents) {
   EXPECT_LT(metrics.entry_offset_P.norm(), 1e-3);
 }
 
-TEST(Metrics, DistinguishesUntouchedFromUnpiercedSkin) {
+TEST(AttemptTrack, DistinguishesUntouchedFromUnpiercedSkin) {
   EXPECT_FALSE(measure_in_box({}, {}).has_touched_skin);
   const std::vector<telemetry::TickSample> whole = make_attempt(make_box_plan().line_P).samples;
   const std::vector<telemetry::TickSample> outside(whole.begin(), whole.begin() + 200);
@@ -78,7 +79,7 @@ TEST(Metrics, DistinguishesUntouchedFromUnpiercedSkin) {
   EXPECT_FALSE(measure_in_box(loading, {}).has_entered);
 }
 
-TEST(Metrics, SkipsNonFiniteSamples) {
+TEST(AttemptTrack, SkipsNonFiniteSamples) {
   Attempt attempt = make_attempt(make_box_plan().line_P);
   const AttemptMetrics clean = measure_in_box(attempt.samples, attempt.fired);
   for (std::size_t i = 3; i < attempt.samples.size(); i += 7)
