@@ -7,6 +7,7 @@
 #include "cli/json_parts.h"
 #include "cli/results/commands.h"
 #include "config/json.h"
+#include "results/attempt_json.h"
 #include "results/attempts.h"
 
 namespace trocar::cli {
@@ -27,22 +28,13 @@ std::string case_text(const results::Case& the_case) {
   return plain_line(fmt::format("{}, {}", the_case.task, the_case.patient));
 }
 
-config::Json attempt_json(const results::Attempt& a, const results::Person& person) {
-  return {{"id", a.id},
-          {"sequence", a.sequence},
-          {"person", person.name},
-          {"group", to_string(person.group)},
-          {"simulated", person.is_simulated},
-          {"task", a.the_case.task},
-          {"patient", a.the_case.patient},
-          {"case", or_null(a.the_case.difficulty)},
-          {"level", a.level},
-          {"started_s", a.started.time_since_epoch().count()},
-          {"state", to_string(a.state)},
-          {"score", or_null(a.score)},
-          {"passed", a.is_passed},
-          {"duration_s", a.duration_s},
-          {"station", a.station}};
+config::Json attempt_json(const results::Attempt& attempt, const results::Person& person) {
+  config::Json json = results::attempt_json(attempt);
+  json["case"] = json["difficulty"];
+  json["person"] = person.name;
+  json["group"] = to_string(person.group);
+  json["simulated"] = person.is_simulated;
+  return json;
 }
 
 Status list_attempts(const std::string& url, const ListArguments& arguments) {

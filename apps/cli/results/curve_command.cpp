@@ -7,6 +7,7 @@
 #include "cli/json_parts.h"
 #include "cli/results/commands.h"
 #include "config/json.h"
+#include "results/attempt_json.h"
 #include "results/people.h"
 #include "results/proficiency.h"
 #include "tasks/task.h"
@@ -38,18 +39,7 @@ config::Json cusum_json(const LearningCurve& curve, const cohort::CusumRates& ra
 }
 
 config::Json curve_json(const LearningCurve& curve, const results::Person& person, const CurveArguments& arguments) {
-  config::Json points = config::Json::array(), peers = config::Json::array(), experts;
-  for (const results::CurveAttempt& point : curve.attempts) {
-    const results::Attempt& attempt = point.attempt;
-    points.push_back({{"n", points.size() + 1},
-                      {"attempt", attempt.id},
-                      {"started_s", attempt.started.time_since_epoch().count()},
-                      {"patient", attempt.the_case.patient},
-                      {"difficulty", or_null(attempt.the_case.difficulty)},
-                      {"score", or_null(attempt.score)},
-                      {"passed", attempt.is_passed},
-                      {"moving_mean", or_null(point.moving_mean)}});
-  }
+  config::Json peers = config::Json::array(), experts;
   for (const auto& point : curve.peer_curve)
     peers.push_back(point ? config::Json({{"people", point->people}, {"mean", point->mean}}) : config::Json(nullptr));
   if (curve.experts)
@@ -64,7 +54,7 @@ config::Json curve_json(const LearningCurve& curve, const results::Person& perso
           {"task", arguments.task},
           {"window", arguments.window},
           {"counts", counts_json(curve.counts)},
-          {"points", std::move(points)},
+          {"points", results::curve_points_json(curve)},
           {"cusum", cusum_json(curve, arguments.rules.cusum)},
           {"trend", or_null(curve.trend)},
           {"experts", std::move(experts)},

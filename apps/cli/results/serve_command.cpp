@@ -10,7 +10,7 @@
 #include "core/log.h"
 #include "database/database_url.h"
 #include "results/repository.h"
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 #include "web/service.h"
 #include "web/transport/http_server.h"
 

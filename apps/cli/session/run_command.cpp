@@ -106,19 +106,10 @@ config::Json result_json(const RunArguments& arguments, const cases::Case& the_c
       {"active_s", result.active_s},
       {"ticks", result.ticks},
       {"ticks_hash", result.ticks_hash},
-      {"score", outcome.is_scored() ? config::Json(outcome.score) : config::Json(nullptr)},
-      {"not_scored", outcome.is_scored() ? config::Json(nullptr) : config::Json(outcome.not_scored)},
-      {"target_reached", outcome.target_reached},
-      {"passed", outcome.is_passed},
-      {"fails", outcome.fails},
-      {"parts", storage::parts_json(outcome.parts)},
       {"punctures", punctures},
-      {"harms", storage::harms_json(outcome.harms)},
-      {"risks_touched", outcome.risks_touched},
       {"core", best != nullptr ? storage::core_json(*best) : config::Json(nullptr)},
-      {"cores", storage::cores_json(outcome.cores)},
-      {"bleeding", outcome.bleeding ? storage::bleeding_json(*outcome.bleeding) : config::Json(nullptr)},
       {"hints", hints}};
+  json.update(storage::outcome_json(outcome));
   if (const auto same = has_same_ticks(arguments.run, result)) json["same_ticks_as_session"] = *same;
   if (arguments.is_realtime) {
     json["ticks_missing"] = result.ticks_missing;

@@ -32,16 +32,13 @@ std::vector<std::string> changed_settings(const storage::Session& session) {
   return changes;
 }
 
-Json text_or_null(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
-}
-
 Json outcome_json(const scoring::Outcome& outcome) {
-  return {{"score", outcome.is_scored() ? Json(outcome.score) : Json(nullptr)},
+  Json all = storage::outcome_json(outcome);
+  return {{"score", std::move(all["score"])},
           {"not_scored", outcome.not_scored},
-          {"passed", outcome.is_passed},
-          {"fails", outcome.fails},
-          {"parts", storage::parts_json(outcome.parts)}};
+          {"passed", std::move(all["passed"])},
+          {"fails", std::move(all["fails"])},
+          {"parts", std::move(all["parts"])}};
 }
 
 Json describe(const storage::Session& session, const ExamEnd& end) {
@@ -50,8 +47,8 @@ Json describe(const storage::Session& session, const ExamEnd& end) {
   const char* const checked_by = end.person.has_given_pin ? "PIN" : "nothing";
   Json json = {{"format", kSealFormat},
                {"attempt_id", info.attempt_id},
-               {"person", text_or_null(end.person.name)},
-               {"person_id", text_or_null(end.person.id)},
+               {"person", config::or_null(end.person.name)},
+               {"person_id", config::or_null(end.person.id)},
                {"person_checked_by", end.person.id.empty() ? Json(nullptr) : Json(checked_by)},
                {"program_version", info.program_version},
                {"force_version", info.force_version},

@@ -12,8 +12,6 @@ config::Json vector_json(const Vec3& v) {
   return config::Json::array({v.x(), v.y(), v.z()});
 }
 
-}  // namespace
-
 config::Json parts_json(const std::vector<scoring::ScorePart>& parts) {
   config::Json all = config::Json::array();
   for (const scoring::ScorePart& part : parts) {
@@ -46,6 +44,12 @@ config::Json harms_json(const std::vector<metrics::HarmEvent>& harms) {
   return all;
 }
 
+config::Json bleeding_json(const scoring::Bleeding& bleeding) {
+  return {{"risk", to_string(bleeding.risk)}, {"reasons", bleeding.reasons}, {"passes", bleeding.passes}};
+}
+
+}  // namespace
+
 config::Json core_json(const scoring::BiopsyCore& core) {
   config::Json pieces = config::Json::array();
   for (const scoring::CorePiece& piece : core.pieces)
@@ -62,14 +66,19 @@ config::Json core_json(const scoring::BiopsyCore& core) {
           {"time_s", core.time_s}};
 }
 
-config::Json cores_json(const std::vector<scoring::BiopsyCore>& cores) {
-  config::Json list = config::Json::array();
-  for (const scoring::BiopsyCore& core : cores) list.push_back(core_json(core));
-  return list;
-}
-
-config::Json bleeding_json(const scoring::Bleeding& bleeding) {
-  return {{"risk", to_string(bleeding.risk)}, {"reasons", bleeding.reasons}, {"passes", bleeding.passes}};
+config::Json outcome_json(const scoring::Outcome& outcome) {
+  config::Json cores = config::Json::array();
+  for (const scoring::BiopsyCore& core : outcome.cores) cores.push_back(core_json(core));
+  return {{"score", outcome.is_scored() ? config::Json(outcome.score) : config::Json(nullptr)},
+          {"not_scored", config::or_null(outcome.not_scored)},
+          {"target_reached", outcome.target_reached},
+          {"passed", outcome.is_passed},
+          {"fails", outcome.fails},
+          {"parts", parts_json(outcome.parts)},
+          {"harms", harms_json(outcome.harms)},
+          {"risks_touched", outcome.risks_touched},
+          {"cores", std::move(cores)},
+          {"bleeding", outcome.bleeding ? bleeding_json(*outcome.bleeding) : config::Json(nullptr)}};
 }
 
 }  // namespace trocar::storage
@@ -221,21 +230,15 @@ std::string outcome_to_json(const scoring::Outcome& outcome) {
     hints.push_back(hint.text);
     hint_times.push_back(hint.at_s ? config::Json(*hint.at_s) : config::Json(nullptr));
   }
-  config::Json object{{"score", outcome.score},
-                      {"target_reached", outcome.target_reached},
-                      {"parts", parts_json(outcome.parts)},
-                      {"passed", outcome.is_passed},
-                      {"fails", outcome.fails},
-                      {"hints", std::move(hints)},
-                      {"hint_times_s", std::move(hint_times)},
-                      {"expert", outcome.expert},
-                      {"pain_events", outcome.pain_events},
-                      {"metrics", metrics_json(outcome.measures)},
-                      {"harms", harms_json(outcome.harms)},
-                      {"risks_touched", outcome.risks_touched}};
-  if (!outcome.is_scored()) object["not_scored"] = outcome.not_scored;
-  if (!outcome.cores.empty()) object["cores"] = cores_json(outcome.cores);
-  if (outcome.bleeding) object["bleeding"] = bleeding_json(*outcome.bleeding);
+  config::Json object = storage::outcome_json(outcome);
+  object["score"] = outcome.score;
+  for (const char* member : {"not_scored", "bleeding", "cores"})
+    if (object[member].is_null() || object[member].empty()) object.erase(member);
+  object["hints"] = std::move(hints);
+  object["hint_times_s"] = std::move(hint_times);
+  object["expert"] = outcome.expert;
+  object["pain_events"] = outcome.pain_events;
+  object["metrics"] = metrics_json(outcome.measures);
   return object.dump(-1, ' ', false, config::Json::error_handler_t::replace);
 }
 

@@ -2,7 +2,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "config/json_fwd.h"
 #include "core/result.h"
@@ -10,13 +9,10 @@
 
 namespace trocar::storage {
 
-/// The parts of a score, biopsy cores and the bleeding risk as JSON, in session files and on the command line.
-config::Json parts_json(const std::vector<scoring::ScorePart>& parts);
-/// The harm of an attempt, in the order of the outcome.
-config::Json harms_json(const std::vector<metrics::HarmEvent>& harms);
+/// What an attempt came to, for session files, seals of exams and the command line: score (null, with not_scored, if
+/// there is none), target_reached, passed, fails, parts, harms, risks_touched, cores, bleeding (null: no biopsy).
+config::Json outcome_json(const scoring::Outcome& outcome);
 config::Json core_json(const scoring::BiopsyCore& core);
-config::Json cores_json(const std::vector<scoring::BiopsyCore>& cores);
-config::Json bleeding_json(const scoring::Bleeding& bleeding);
 
 }  // namespace trocar::storage
 

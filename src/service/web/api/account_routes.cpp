@@ -8,7 +8,7 @@
 #include "signing/password.h"
 #include "signing/token.h"
 #include "web/api/route.h"
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 
 namespace trocar::web {
 namespace {

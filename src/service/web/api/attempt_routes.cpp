@@ -5,12 +5,13 @@
 
 #include "cohort/learning_curve.h"
 #include "core/log.h"
+#include "results/attempt_json.h"
 #include "results/attempts_csv.h"
 #include "results/notes.h"
 #include "scoring/score.h"
 #include "web/api/json_fields.h"
 #include "web/api/route.h"
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 
 // One attempt: verdict, values beside those of experts, trace, recording; and the export of all.
 
@@ -97,7 +98,7 @@ Result<std::optional<Json>> load_json_of(Backend& backend, const std::string& id
   const results::AttemptRecord* const record = &loaded->record;
   const results::Person* const person = &loaded->person;
   TROCAR_TRY(const Json experts, experts_of(backend, record->attempt.the_case.task, *person, now));
-  Json attempt = attempt_json(record->attempt);
+  Json attempt = results::attempt_json(record->attempt);
   attempt["task_title"] = backend.titles.task_title(record->attempt.the_case.task);
   attempt["person"] = {{"id", person->id}, {"name", person->name}, {"simulated", person->is_simulated}};
   attempt["not_scored"] = or_null(record->not_scored);

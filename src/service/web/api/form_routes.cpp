@@ -5,7 +5,7 @@
 #include "language/language.h"
 #include "results/questionnaires.h"
 #include "web/api/route.h"
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 
 namespace trocar::web {
 namespace {

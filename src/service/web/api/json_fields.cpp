@@ -35,14 +35,6 @@ Status check_fields(const Json& body, std::span<const std::string_view> names) {
   return {};
 }
 
-Json or_null(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-Json or_null(std::string_view text) {
-  return text.empty() ? Json(nullptr) : Json(text);
-}
-
 double rounded(double value) noexcept {
   constexpr double kThousand = 1000.0;
   return std::round(value * kThousand) / kThousand;
@@ -61,21 +53,6 @@ Json numbers(const std::vector<double>& values) {
 }
 
 }  // namespace
-
-Json attempt_json(const results::Attempt& attempt) {
-  return {{"id", attempt.id},
-          {"sequence", attempt.sequence},
-          {"task", attempt.the_case.task},
-          {"patient", attempt.the_case.patient},
-          {"difficulty", attempt.the_case.difficulty ? Json(*attempt.the_case.difficulty) : Json(nullptr)},
-          {"level", or_null(attempt.level)},
-          {"started_s", seconds_of(attempt.started)},
-          {"state", results::to_string(attempt.state)},
-          {"score", or_null(attempt.score)},
-          {"passed", learning::counts(results::ending_of(attempt.state)) ? Json(attempt.is_passed) : Json(nullptr)},
-          {"duration_s", rounded(attempt.duration_s)},
-          {"station", or_null(attempt.station)}};
-}
 
 Json note_json(const results::Note& note) {
   return {{"id", note.id}, {"author", note.author}, {"text", note.text}, {"written_s", seconds_of(note.written)}};

@@ -19,6 +19,7 @@
 namespace trocar::web {
 
 using config::Json;
+using config::or_null;
 
 inline constexpr std::size_t kMostTextBytes = 4096;
 /// A text of the body, of at most so many bytes of UTF-8. Error (exit status 2): missing, not a text, too long.
@@ -29,15 +30,10 @@ Result<std::string> text_field_or_empty(const Json& body, const char* name, std:
 /// Error (exit status 2): not an object, or a field of another name.
 Status check_fields(const Json& body, std::span<const std::string_view> names);
 
-/// A value, or null.
-Json or_null(const std::optional<double>& value);
-Json or_null(std::string_view text);  ///< Null if it is empty.
 /// To three decimals: micrometres, millinewtons.
 double rounded(double value) noexcept;
 std::int64_t seconds_of(results::Seconds time) noexcept;
 
-/// An attempt as lists show it.
-Json attempt_json(const results::Attempt& attempt);
 Json note_json(const results::Note& note);
 /// Path and forces; frame P (LPS, mm).
 Json trace_json(const results::Trace& trace);

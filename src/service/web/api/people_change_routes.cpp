@@ -2,7 +2,7 @@
 #include "core/log.h"
 #include "results/notes.h"
 #include "web/api/route.h"
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 
 namespace trocar::web {
 namespace {

@@ -8,11 +8,12 @@
 #include "core/log.h"
 #include "core/text.h"
 #include "results/attempt.h"
+#include "results/attempt_json.h"
 #include "results/notes.h"
 #include "results/proficiency.h"
 #include "web/api/json_fields.h"
 #include "web/api/route.h"
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 
 namespace trocar::web {
 namespace {
@@ -133,7 +134,7 @@ Result<Json> attempt_list_json(results::Repository& repository, const std::strin
              results::list_reasons(repository, person, attempts.back().sequence, attempts.front().sequence));
   TROCAR_TRY(const auto notes, results::count_notes(repository, person));
   for (const results::Attempt& attempt : attempts) {
-    Json json = attempt_json(attempt);
+    Json json = results::attempt_json(attempt);
     const auto reason = reasons.find(attempt.sequence);
     json["fails"] = reason == reasons.end() ? Json::array() : Json(reason->second.fails);
     json["not_scored"] = reason == reasons.end() ? Json(nullptr) : or_null(reason->second.not_scored);
@@ -168,22 +169,11 @@ Result<HttpAnswer> list_attempts(Backend& backend, const Call& call) {
 }
 
 Json curve_json(const results::LearningCurve& curve) {
-  Json points = Json::array(), cusum = Json::array(), peers = Json::array();
-  for (const results::CurveAttempt& point : curve.attempts) {
-    const results::Attempt& attempt = point.attempt;
-    points.push_back({{"n", points.size() + 1},
-                      {"attempt", attempt.id},
-                      {"started_s", seconds_of(attempt.started)},
-                      {"score", or_null(attempt.score)},
-                      {"passed", attempt.is_passed},
-                      {"patient", attempt.the_case.patient},
-                      {"difficulty", attempt.the_case.difficulty ? Json(*attempt.the_case.difficulty) : Json(nullptr)},
-                      {"moving_mean", or_null(point.moving_mean)}});
-    cusum.push_back(point.cusum);
-  }
+  Json cusum = Json::array(), peers = Json::array();
+  for (const results::CurveAttempt& point : curve.attempts) cusum.push_back(point.cusum);
   for (const auto& point : curve.peer_curve) peers.push_back(point ? Json(rounded(point->mean)) : Json(nullptr));
   const cohort::CusumRates rates = results::CurveRules().cusum;
-  Json json = {{"points", std::move(points)},
+  Json json = {{"points", results::curve_points_json(curve)},
                {"counts_text", learning::counts_text(curve.counts)},
                {"cusum",
                 {{"values", std::move(cusum)},

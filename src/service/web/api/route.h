@@ -16,7 +16,7 @@
 #include "web/api/json_fields.h"
 #include "web/message.h"
 #include "web/repository_pool.h"
-#include "web/security/login_throttle.h"
+#include "web/security/rate_limits.h"
 #include "web/timed_cache.h"
 
 namespace trocar::web {
