@@ -43,7 +43,7 @@ Seen watch(ultrasound::LiveScanner& scanner, ultrasound::ScanRequest request, co
       station.client.frame_drawn();
     }
     std::this_thread::sleep_until(start + std::chrono::duration<double>((n + 1) / kRequests_hz));
-    const auto picture = scanner.newest();
+    const auto picture = scanner.pictures().value();
     if (!picture || picture->number == last) continue;
     last = picture->number;
     seen.took_ms.push_back(picture->took_ms);

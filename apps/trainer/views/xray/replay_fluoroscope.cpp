@@ -118,8 +118,8 @@ void ReplayFluoroscope::request(ReplayXrayRequest request) {
   impl_->worker.request(std::move(request));
 }
 
-std::shared_ptr<const xray::FluoroscopyFrame> ReplayFluoroscope::newest() const {
-  return impl_->worker.newest();
+const Feed<xray::FluoroscopyFrame>& ReplayFluoroscope::frames() const noexcept {
+  return impl_->worker.images();
 }
 
 std::optional<Error> ReplayFluoroscope::error() const {

@@ -39,7 +39,7 @@ class ReplayFluoroscope {
 
   void request(ReplayXrayRequest request);
   /// Newest image; its time_s is the image_s of its request, its dose is of no examination. nullptr before the first.
-  std::shared_ptr<const xray::FluoroscopyFrame> newest() const;
+  const Feed<xray::FluoroscopyFrame>& frames() const noexcept;
   /// The error of the last request, if it failed.
   std::optional<Error> error() const;
 

@@ -97,7 +97,7 @@ void XrayView::begin() {
   clear_examination();
   if (!prepared_) return;
   fluoroscope_->open(prepared_->volume);
-  const auto agent = contrast_.newest();
+  const auto agent = contrast_.states().value();
   if (!is_contrast_open_ || (agent && agent->injected_ml > 0.0)) open_contrast();
 }
 
@@ -152,7 +152,7 @@ void XrayView::advance_live(double now_s) {
   contrast_.request({shaft_P_.empty() ? Vec3(Vec3::Constant(NAN)) : motion_.to_rest(shaft_P_.back()),
                      is_injecting() && !shaft_P_.empty() ? settings_.injection_ml_per_s : 0.0});
   xray::FluoroscopyRequest request = make_request(shaft_P_, is_injecting());
-  if (const auto agent = contrast_.newest()) {
+  if (const auto agent = contrast_.states().value()) {
     request.iodine = agent->iodine;
     if (is_injecting() && !request.tools.empty())
       request.tools.front().filling_iodine_mg_per_ml = agent->iodine_mg_per_ml;
@@ -160,7 +160,7 @@ void XrayView::advance_live(double now_s) {
   request.is_pedal_down = is_pedal_down_;
   request.time_s = now_s;
   fluoroscope_->request(std::move(request));
-  take(fluoroscope_->newest(), fluoroscope_->error());
+  take(fluoroscope_->frames().value(), fluoroscope_->error());
 }
 
 void XrayView::take(std::shared_ptr<const xray::FluoroscopyFrame> newest, const std::optional<Error>& error) {
@@ -255,7 +255,7 @@ tasks::XrayUse XrayView::use() const {
   use.isocentre_P = arm.isocentre_P;
   use.field_mm = arm.field_mm;
   use.is_beam_on = frame_ != nullptr && !frame_->is_held;
-  if (const auto state = contrast_.newest()) use.contrast_ml = state->injected_ml;
+  if (const auto state = contrast_.states().value()) use.contrast_ml = state->injected_ml;
   if (!frame_) return use;
   use.beam_s = frame_->dose.beam_on_s;
   use.air_kerma_mgy = frame_->dose.air_kerma_mgy;

@@ -89,7 +89,7 @@ class XrayView : public QWidget {
   /// State of the examination, without its time; in a replay the recorded one.
   tasks::XrayUse use() const;
   /// What the tip is in, as far as contrast agent matters.
-  std::shared_ptr<const xray::ContrastState> contrast() const { return contrast_.newest(); }
+  std::shared_ptr<const xray::ContrastState> contrast() const { return contrast_.states().value(); }
 
   QSize sizeHint() const override { return {640, 640}; }
   QSize minimumSizeHint() const override { return {240, 240}; }

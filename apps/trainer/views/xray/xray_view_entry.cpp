@@ -53,9 +53,9 @@ class XrayViewEntry final : public View {
     if (is_needed_) view_->prepare();
   }
   void show_tools(const ToolContext& context) override {
-    view_->set_motion(context.tools.motion);
-    view_->set_needle(context.tools.shaft_P);
-    view_->set_wire(context.tools.wire_P);
+    view_->set_motion(context.tools->motion);
+    view_->set_needle(context.tools->shaft_P);
+    view_->set_wire(context.tools->wire_P);
   }
   void update(const FrameContext& frame) override { view_->advance(frame.now_s); }
 

@@ -23,7 +23,7 @@ void XrayView::begin_replay(std::shared_ptr<const attempt::InjectionSteps> injec
   const std::array<double, 2> collimation = settings_.arm.collimation;
   clear_examination();
   change_settings([&](XraySettings& s) { s.arm.collimation = collimation; });
-  if (contrast_.newest()) {  // otherwise it still follows the ducts, and closing would wait
+  if (contrast_.states().value()) {  // otherwise it still follows the ducts, and closing would wait
     contrast_.close();
     is_contrast_open_ = false;
   }
@@ -76,7 +76,7 @@ void XrayView::advance_replay() {
   request.scene = make_request(replay.shaft_P, moment.is_injecting_then);
   request.scene.arm = c_arm_of(moment.image, settings_.arm);
   replay.fluoroscope->request(std::move(request));
-  auto newest = replay.fluoroscope->newest();
+  auto newest = replay.fluoroscope->frames().value();
   // After a black screen, an image of another time would be wrong.
   if (!frame_ && newest && newest->time_s != *moment.image_s) newest.reset();
   take(std::move(newest), replay.fluoroscope->error());

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/clock.h"
+#include "core/live/feed.h"
 #include "core/live/live_schedule.h"
 #include "core/log.h"
 #include "core/parallel.h"
@@ -55,8 +56,8 @@ struct LiveWorkerOptions {
 /// A thread that makes live images. It takes the newest request and drops older ones; LiveSchedule decides from
 /// measured times whether a frame is due and at which level of detail. It works only on request: a request that is not
 /// due is dropped, so a client repeats its request, for example once per displayed frame. A failed render keeps the
-/// last image; the next request tries again. All calls are for one client thread; only the destructor and
-/// wait_until_idle() wait for a frame.
+/// last image; the next request tries again. All calls are for one client thread (images(): any); only the destructor
+/// and wait_until_idle() wait for a frame.
 ///
 /// `Traits`: as for LiveSchedule, and
 ///   using Image; static void stamp(Image&, std::uint64_t number, double took_ms): stores number and time in an image.
@@ -85,15 +86,14 @@ class LiveWorker {
   /// Opens another subject: the waiting request, the newest image and a frame in work are dropped. The worker's thread
   /// destroys the former renderer.
   void open(std::unique_ptr<Renderer> renderer) {
-    std::shared_ptr<const Image> old;  // freed after the lock, like the renderer that was never used
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(mutex_);  // the renderer that was never used is freed after it
     ++opened_;
     stop_.request_stop();
     stop_ = std::stop_source();
     fresh_.swap(renderer);
     request_.reset();
     error_.reset();
-    old.swap(newest_);
+    images_.clear();
   }
   /// Starts the worker's thread if it does not run; error() tells that it cannot start.
   void request(Request request) {
@@ -105,11 +105,8 @@ class LiveWorker {
     wake_.notify_one();
   }
 
-  /// nullptr before the first image of the subject.
-  std::shared_ptr<const Image> newest() const {
-    const std::lock_guard lock(mutex_);
-    return newest_;
-  }
+  /// The images, for any thread; none before the first one of the subject.
+  const Feed<Image>& images() const noexcept { return images_; }
   /// The error of the last frame, if its render failed, or of the worker's thread.
   std::optional<Error> error() const {
     const std::lock_guard lock(mutex_);
@@ -207,7 +204,7 @@ class LiveWorker {
     if (job.opened != opened_) return;  // of the former subject
     if (!made) return note_error(std::move(made).error());
     error_.reset();
-    newest_.swap(shared);
+    images_.publish(std::move(shared));
   }
 
   /// Under the mutex.
@@ -226,7 +223,7 @@ class LiveWorker {
   std::stop_source stop_;
   std::unique_ptr<Renderer> fresh_;  ///< Renderer of the subject opened last, until the worker takes it.
   std::optional<Request> request_;
-  std::shared_ptr<const Image> newest_;
+  Feed<Image> images_;  ///< Written under the mutex: nothing of a former subject follows open().
   std::optional<Error> error_;
 
   // Used by the worker's thread only.

@@ -147,12 +147,12 @@ void LiveScanner::request(ScanRequest request) {
   if (is_finite(request)) impl_->worker.request(std::move(request));
 }
 
-std::shared_ptr<const ScanPicture> LiveScanner::newest() const {
-  return impl_->worker.newest();
+const Feed<ScanPicture>& LiveScanner::pictures() const noexcept {
+  return impl_->worker.images();
 }
 
 void LiveScanner::set_frozen(bool is_frozen) {
-  if (is_frozen && !newest()) return;
+  if (is_frozen && !pictures().value()) return;
   impl_->cine.change([&](Impl::CineCommands& commands) {
     commands = {};
     commands.is_frozen = is_frozen;
@@ -187,7 +187,7 @@ CineState LiveScanner::cine() const {
   CineState state;
   state.is_frozen = commands.is_frozen;
   state.is_playing = commands.is_playing;
-  if (const auto picture = newest()) {
+  if (const auto picture = pictures().value()) {
     state.position = picture->cine_position;
     state.size = picture->cine_size;
   }

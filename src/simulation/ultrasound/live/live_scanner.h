@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/live/feed.h"
 #include "ultrasound/live/scan_picture.h"
 
 namespace trocar::ultrasound {
@@ -38,8 +39,8 @@ class LiveScanner {
 
   /// A request with a non-finite pose or needle is ignored. Settings are clamped.
   void request(ScanRequest request);
-  /// Newest picture; nullptr before the first one.
-  std::shared_ptr<const ScanPicture> newest() const;
+  /// The pictures, for any thread; none before the first one.
+  const Feed<ScanPicture>& pictures() const noexcept;
 
   /// While frozen, requests change only gain, dynamic range, gray map, mirroring and size of the picture. Depth,
   /// frequency and TGC take effect after the freeze. Has no effect before the first picture.

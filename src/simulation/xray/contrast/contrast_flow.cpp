@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -155,9 +154,8 @@ struct LiveContrast::Impl {
   void run(const std::stop_token& stop, std::shared_ptr<const anatomy::VirtualPatient> patient, BloodVelocity blood);
   void advance(ContrastFlow& flow, double iodine_mg_per_ml, double dt_s);
 
-  mutable std::mutex mutex;
-  InjectionRequest wanted;
-  std::shared_ptr<const ContrastState> newest;
+  Feed<InjectionRequest> wanted;
+  Feed<ContrastState> states;
   std::jthread thread;
 };
 
@@ -178,13 +176,9 @@ void LiveContrast::Impl::run(const std::stop_token& stop, std::shared_ptr<const 
 }
 
 void LiveContrast::Impl::advance(ContrastFlow& flow, double iodine_mg_per_ml, double dt_s) {
-  InjectionRequest request;
-  std::shared_ptr<const ContrastState> before;
-  {
-    const std::lock_guard lock(mutex);
-    request = wanted;
-    before = newest;
-  }
+  const std::shared_ptr<const InjectionRequest> wanted_now = wanted.value();
+  const InjectionRequest request = wanted_now ? *wanted_now : InjectionRequest{};
+  const std::shared_ptr<const ContrastState> before = states.value();
   if (request.ml_per_s <= 0.0 || !request.tip_P.allFinite()) {
     flow.stop_injection();
   } else if (const Status status = flow.inject(request.tip_P, request.ml_per_s, iodine_mg_per_ml); !status) {
@@ -198,8 +192,7 @@ void LiveContrast::Impl::advance(ContrastFlow& flow, double iodine_mg_per_ml, do
   // Without agent in the body the pointer stays the same: nothing changes in the image.
   state->iodine =
       flow.totals().in_body_mg() > 0.0 || !before ? std::make_shared<const Iodine>(flow.iodine()) : before->iodine;
-  const std::lock_guard lock(mutex);
-  newest = std::move(state);
+  states.publish(std::move(state));
 }
 
 LiveContrast::LiveContrast() : impl_(std::make_unique<Impl>()) {}
@@ -216,18 +209,16 @@ void LiveContrast::open(std::shared_ptr<const anatomy::VirtualPatient> patient, 
 
 void LiveContrast::close() {
   impl_->thread = {};  // stops and joins
-  impl_->newest.reset();
-  impl_->wanted = {};
+  impl_->states.clear();
+  impl_->wanted.clear();
 }
 
 void LiveContrast::request(const InjectionRequest& request) {
-  const std::lock_guard lock(impl_->mutex);
-  impl_->wanted = request;
+  impl_->wanted.publish(request);
 }
 
-std::shared_ptr<const ContrastState> LiveContrast::newest() const {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->newest;
+const Feed<ContrastState>& LiveContrast::states() const noexcept {
+  return impl_->states;
 }
 
 }  // namespace trocar::xray

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "anatomy/patient.h"
+#include "core/live/feed.h"
 #include "core/result.h"
 #include "xray/contrast/contrast_table.h"
 #include "xray/contrast/duct_fill.h"
@@ -101,8 +102,9 @@ class LiveContrast {
   void close();
   /// Holds until the next request.
   void request(const InjectionRequest& request);
-  /// nullptr before the ducts were followed, and for a patient for whom it failed (the log has the reason).
-  std::shared_ptr<const ContrastState> newest() const;
+  /// For any thread; none before the ducts were followed, and for a patient for whom it failed (the log has the
+  /// reason).
+  const Feed<ContrastState>& states() const noexcept;
 
  private:
   struct Impl;

@@ -98,8 +98,8 @@ void LiveFluoroscope::request(FluoroscopyRequest request) {
   impl_->worker.request(std::move(request));
 }
 
-std::shared_ptr<const FluoroscopyFrame> LiveFluoroscope::newest() const {
-  return impl_->worker.newest();
+const Feed<FluoroscopyFrame>& LiveFluoroscope::frames() const noexcept {
+  return impl_->worker.images();
 }
 
 std::optional<Error> LiveFluoroscope::error() const {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/live/feed.h"
 #include "core/live/live_schedule.h"
 #include "xray/fluoroscopy/fluoroscope.h"
 
@@ -61,8 +62,8 @@ class LiveFluoroscope {
   void open(std::shared_ptr<const XrayVolume> volume);
   /// A request with a non-finite time or motion is ignored.
   void request(FluoroscopyRequest request);
-  /// Newest image; nullptr before the first pulse.
-  std::shared_ptr<const FluoroscopyFrame> newest() const;
+  /// The images, for any thread; none before the first pulse.
+  const Feed<FluoroscopyFrame>& frames() const noexcept;
   /// The error of the last request, if it failed: an impossible C-arm or tube.
   std::optional<Error> error() const;
 

@@ -6,30 +6,32 @@ namespace trocar::attempt {
 
 AttemptView AttemptExchange::view() const {
   const std::lock_guard lock(mutex_);
-  AttemptView view = aged(update_.view, seconds_between(published_, clock_->now()));
-  // A second key press acts against the first one, even before the loop has taken that one.
-  view.are_forces_stopped = requests_.stopped.value_or(view.are_forces_stopped);
+  const std::shared_ptr<const AttemptView> newest = states_.value();
+  AttemptView view = newest ? aged(*newest, seconds_between(newest->made, clock_->now())) : AttemptView{};
+  // A second key press acts against the first one, even before the loop has answered that one.
+  view.are_forces_stopped = stopped_.value_or(view.are_forces_stopped);
+  view.is_performing = view.is_performing || performs_;
   return view;
 }
 
 std::vector<ForcePoint> AttemptExchange::take_forces() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(update_.forces, {});
+  return std::exchange(untaken_.forces, {});
 }
 
 std::vector<AttemptEvent> AttemptExchange::take_events() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(update_.events, {});
+  return std::exchange(untaken_.events, {});
 }
 
 std::optional<Result<RunResult>> AttemptExchange::take_result() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(update_.result, std::nullopt);
+  return std::exchange(untaken_.result, std::nullopt);
 }
 
 std::shared_ptr<HapticServers> AttemptExchange::servers() const {
   const std::lock_guard lock(mutex_);
-  return update_.servers;
+  return untaken_.servers;
 }
 
 void AttemptExchange::frame_drawn() {
@@ -64,12 +66,12 @@ void AttemptExchange::repeat_phase(std::size_t phase) {
 
 void AttemptExchange::stop_forces() {
   const std::lock_guard lock(mutex_);
-  requests_.stopped = true;
+  requests_.stopped = stopped_ = true;
 }
 
 void AttemptExchange::resume_forces() {
   const std::lock_guard lock(mutex_);
-  requests_.stopped = false;
+  requests_.stopped = stopped_ = false;
 }
 
 void AttemptExchange::set_parameters(link::SetParameters parameters) {
@@ -79,7 +81,7 @@ void AttemptExchange::set_parameters(link::SetParameters parameters) {
 
 void AttemptExchange::perform(std::unique_ptr<tasks::Operator> the_operator) {
   const std::lock_guard lock(mutex_);
-  update_.view.is_performing = update_.view.is_performing || the_operator != nullptr;
+  performs_ = performs_ || the_operator != nullptr;
   requests_.performer = std::move(the_operator);
 }
 
@@ -95,16 +97,17 @@ AttemptRequests AttemptExchange::take_requests() {
 
 void AttemptExchange::publish(AttemptUpdate update) {
   constexpr std::size_t kMostKept = 100'000;  // if the client takes none
+  update.view.made = clock_->now();
   const std::lock_guard lock(mutex_);
-  update.view.is_performing = update.view.is_performing || requests_.performer != nullptr;
-  update_.view = std::move(update.view);
-  published_ = clock_->now();
-  update_.servers = std::move(update.servers);
-  if (update_.forces.size() < kMostKept)
-    update_.forces.insert(update_.forces.end(), update.forces.begin(), update.forces.end());
-  if (update_.events.size() < kMostKept)
-    update_.events.insert(update_.events.end(), update.events.begin(), update.events.end());
-  if (update.result) update_.result = std::move(update.result);
+  states_.publish(std::move(update.view));
+  stopped_ = requests_.stopped;
+  performs_ = requests_.performer != nullptr;
+  untaken_.servers = std::move(update.servers);
+  if (untaken_.forces.size() < kMostKept)
+    untaken_.forces.insert(untaken_.forces.end(), update.forces.begin(), update.forces.end());
+  if (untaken_.events.size() < kMostKept)
+    untaken_.events.insert(untaken_.events.end(), update.events.begin(), update.events.end());
+  if (update.result) untaken_.result = std::move(update.result);
 }
 
 }  // namespace trocar::attempt

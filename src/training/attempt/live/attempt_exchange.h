@@ -11,6 +11,7 @@
 #include "attempt/live/attempt_view.h"
 #include "attempt/record/score_session.h"
 #include "core/clock.h"
+#include "core/live/feed.h"
 #include "core/result.h"
 #include "geometry/pose.h"
 #include "link/messages.h"
@@ -51,12 +52,16 @@ struct AttemptUpdate {
 };
 
 /// Requests and updates: the only data that a client and the loop of an attempt share. Each may run on its own thread;
-/// the mutex is held for copies only.
+/// the mutex is held for copies only. The states of the attempt are a feed, for any number of readers on any threads.
 class AttemptExchange {
  public:
   explicit AttemptExchange(std::shared_ptr<const Clock> clock) : clock_(std::move(clock)) {}
 
+  /// The states of the attempt, one a poll of the loop, as it published them.
+  const Feed<AttemptView>& states() const noexcept { return states_; }
+
   // Client side; one thread.
+  /// The newest state with its age (see aged()) and the effect of requests that the loop has not answered yet.
   AttemptView view() const;
   /// Forces of the recorded session since the last call, thinned to the resolution of a plot; all peaks are kept.
   std::vector<ForcePoint> take_forces();
@@ -100,8 +105,11 @@ class AttemptExchange {
   std::shared_ptr<const Clock> clock_;
   mutable std::mutex mutex_;
   AttemptRequests requests_;
-  AttemptUpdate update_;
-  Clock::TimePoint published_;
+  /// Requested, and not part of the newest state yet.
+  std::optional<bool> stopped_;
+  bool performs_ = false;
+  AttemptUpdate untaken_;  ///< Its view is not used.
+  Feed<AttemptView> states_;
 };
 
 }  // namespace trocar::attempt

@@ -35,12 +35,12 @@ AttemptLoop::AttemptLoop(AttemptCase the_case, LoopOptions options, AttemptOpera
       clock_(clock),
       exchange_(exchange),
       servers_(std::move(servers)),
-      needle_(std::move(supervisors.needle)),
-      transducer_(std::move(supervisors.transducer)),
       performer_(std::move(operators.needle)),
       led_transducer_(options_.X_PT_start),
       own_motion_(std::move(operators.transducer)),
       transducer_motion_(own_motion_ ? own_motion_.get() : &led_transducer_) {
+  needle_.server = std::move(supervisors.needle);
+  transducer_.server = std::move(supervisors.transducer);
   auto steering = std::make_unique<NeedleSteering>();
   steering_ = steering.get();
   if (performer_.the_operator != nullptr) {
@@ -56,36 +56,35 @@ AttemptLoop::AttemptLoop(AttemptCase the_case, LoopOptions options, AttemptOpera
 }
 
 void AttemptLoop::prepare() {
-  if (!performer_.parameters.empty()) needle_->set_parameters(as_command(performer_.parameters.front()));
-  needle_->prepare({scene_of(case_, performer_.force_model, options_, "needle"), hand_target(command_, 0.0)});
-  if (!transducer_) return;
+  if (!performer_.parameters.empty()) needle_.server->set_parameters(as_command(performer_.parameters.front()));
+  needle_.server->prepare({scene_of(case_, performer_.force_model, options_, "needle"), hand_target(command_, 0.0)});
+  if (!transducer_.server) return;
   PreparationRequest request{scene_of(case_, performer_.force_model, options_, "probe"), {}};
   request.place.X_PN = transducer_motion_->X_PT_start();
   request.scene.X_PW = transducer_room(request.scene.X_PW, transducer_motion_->X_PT_room());
-  transducer_->prepare(request);
+  transducer_.server->prepare(request);
 }
 
 bool AttemptLoop::poll() {
-  if (has_ended_) return false;
+  if (std::holds_alternative<Ended>(state_)) return false;
   const Status status = step();
-  watch_disk();
-  publish(phase_now());
+  if (Recording* now = recording()) watch_disk(*now);
+  publish(phase_now(), is_preparing() ? preparation() : Activity{});
   if (status && !finishes_) return true;
   conclude(status);
   return false;
 }
 
 void AttemptLoop::abandon() {
-  has_ended_ = true;
-  needle_->end();
-  if (transducer_) transducer_->end();
-  live_.reset();
-  record_.reset();  // closes the file
+  needle_.server->end();
+  if (transducer_.server) transducer_.server->end();
+  state_.emplace<Ended>();  // closes the file
 }
 
 void AttemptLoop::leave() {
-  if (has_ended_) return;
-  const bool was_inside = record_ && std::ranges::any_of(record_->samples(), telemetry::is_in_body);
+  if (std::holds_alternative<Ended>(state_)) return;
+  const bool was_inside =
+      recording() != nullptr && std::ranges::any_of(recording()->record.samples(), telemetry::is_in_body);
   if (was_inside) return conclude({});
   abandon();
 }
@@ -94,21 +93,18 @@ Status AttemptLoop::step() {
   TROCAR_TRY_STATUS(take_requests());
   // Ticks first: when a poll finds the server changed, all ticks of the old one were taken.
   TROCAR_TRY_STATUS(step_needle());
-  if (transducer_) TROCAR_TRY_STATUS(step_transducer());
+  if (transducer_.server) TROCAR_TRY_STATUS(step_transducer());
   if (finishes_) return {};
-  if (transducer_) {
-    needle_->hold_start(!has_ever_been_on_ && transducer_->is_loading());
-    transducer_->hold_start(!has_ever_been_on_ && needle_->is_loading());
-    poll_server(*transducer_);
+  if (transducer_.server) {
+    needle_.server->hold_start(is_preparing() && transducer_.server->is_loading());
+    transducer_.server->hold_start(is_preparing() && needle_.server->is_loading());
+    poll_server(*transducer_.server);
   }
-  poll_server(*needle_);
+  poll_server(*needle_.server);
   TROCAR_TRY_STATUS(check_servers());
   const bool is_transducer_settled =
-      !transducer_ || transducer_->is_fresh() || transducer_->state() == ServerState::kFailed;
-  if (needle_->is_fresh() && is_transducer_settled) {
-    has_ever_been_on_ = true;
-    if (!record_) TROCAR_TRY_STATUS(start_recording());
-  }
+      !transducer_.server || transducer_.server->is_fresh() || transducer_.server->state() == ServerState::kFailed;
+  if (is_preparing() && needle_.server->is_fresh() && is_transducer_settled) TROCAR_TRY_STATUS(start_recording());
   return {};
 }
 
@@ -117,45 +113,44 @@ Status AttemptLoop::take_requests() {
   lead(requests);
   if (requests.stopped) stop_or_resume(*requests.stopped);
   if (requests.performer) steering_->perform(std::move(requests.performer));
-  for (const link::SetParameters& parameters : requests.parameters) {
-    needle_->set_parameters(parameters);
-    if (transducer_) transducer_->set_parameters(parameters);
-  }
-  if (requests.has_drawn) {
-    needle_->frame_drawn();
-    if (transducer_) transducer_->frame_drawn();
+  for (const LiveTool* tool : {&needle_, &transducer_}) {
+    if (!tool->server) continue;
+    for (const link::SetParameters& parameters : requests.parameters) tool->server->set_parameters(parameters);
+    if (requests.has_drawn) tool->server->frame_drawn();
   }
   finishes_ = finishes_ || requests.finishes;
+  return recording() != nullptr ? take_requests(*recording(), requests) : Status{};
+}
+
+/// Those that have no effect before the attempt.
+Status AttemptLoop::take_requests(Recording& recording, AttemptRequests& requests) {
   for (tasks::XrayUse& use : requests.xray) {
-    if (!record_ || record_->samples().empty()) continue;  // before the attempt
-    use.time_s = live_->time_s();
-    note_contrast(use);
-    TROCAR_TRY_STATUS(record_->append(use));
+    if (recording.record.samples().empty()) continue;
+    use.time_s = recording.live.time_s();
+    if (recording.watch) recording.watch->take(use);
+    TROCAR_TRY_STATUS(recording.record.append(use));
   }
-  tell_injection();
-  if (requests.repeated_phase && phases_) phases_->repeat(*requests.repeated_phase);
-  for (const tasks::ActionRequest& request : requests.actions)
-    if (record_) TROCAR_TRY_STATUS(act(request));
+  if (requests.repeated_phase && recording.watch) recording.watch->repeat_phase(*requests.repeated_phase);
+  for (const tasks::ActionRequest& request : requests.actions) TROCAR_TRY_STATUS(act(recording, request));
   return {};
 }
 
-Status AttemptLoop::act(const tasks::ActionRequest& request) {
-  TROCAR_TRY(const auto action, record_->act(request));
-  note_shots();
-  note_actions();
+Status AttemptLoop::act(Recording& recording, const tasks::ActionRequest& request) {
+  TROCAR_TRY(const auto action, recording.record.act(request));
+  if (!recording.watch) return {};
+  recording.watch->take_actions();
   constexpr double kLess_mm = 0.5;
-  const bool stops = action && action->kind == tasks::ActionKind::kAdvanceWire &&
-                     action->amount < request.amount - kLess_mm && options_.has_view;
-  if (stops) events_.back().text += ": it goes no further, do not force it";
+  const bool stops =
+      action && action->kind == tasks::ActionKind::kAdvanceWire && action->amount < request.amount - kLess_mm;
+  if (stops) recording.watch->remark(": it goes no further, do not force it");
   return {};
 }
 
 /// So far from the skin that a hand that moves it fast is slow before it touches.
 bool AttemptLoop::is_needle_free() const {
   constexpr double kNear_mm = 10.0;
-  if (!last_needle_) return false;
-
-  return volume::sample_linear(case_.the_case->patient->skin_distance_mm, last_needle_->rest_tip_mm) > kNear_mm;
+  if (!needle_.last) return false;
+  return volume::sample_linear(case_.the_case->patient->skin_distance_mm, needle_.last->rest_tip_mm) > kNear_mm;
 }
 
 void AttemptLoop::lead(const AttemptRequests& requests) {
@@ -165,16 +160,16 @@ void AttemptLoop::lead(const AttemptRequests& requests) {
   if (requests.needle_clamped) needle.clamp(*requests.needle_clamped);
   if (requests.probe_clamped) transducer.clamp(*requests.probe_clamped);
   // A trainee who does not see where the needle is does not move it: motion of that time is discarded.
-  if (requests.needle && needle_->is_fresh() && !steering_->is_performing())
+  if (requests.needle && needle_.server->is_fresh() && !steering_->is_performing())
     needle.lead(requests.needle->X_P, requests.needle->v_P, requests.needle->w_P);
   if (requests.probe) transducer.lead(requests.probe->X_P, requests.probe->v_P, requests.probe->w_P);
 }
 
 void AttemptLoop::stop_or_resume(bool is_stopped) {
   is_stopped_ = is_stopped;
-  for (ServerSupervisor* server : {needle_.get(), transducer_.get()}) {
-    if (server == nullptr) continue;
-    is_stopped ? server->stop_forces() : server->resume_forces();
+  for (const LiveTool* tool : {&needle_, &transducer_}) {
+    if (!tool->server) continue;
+    is_stopped ? tool->server->stop_forces() : tool->server->resume_forces();
   }
 }
 
@@ -189,27 +184,30 @@ void AttemptLoop::poll_server(ServerSupervisor& server) {
 }
 
 Status AttemptLoop::check_servers() {
-  const bool is_needle_fatal = options_.ends_with_needle_server || !has_ever_been_on_;
-  if (needle_->state() == ServerState::kFailed && is_needle_fatal) return tl::unexpected(needle_->failure());
-  if (transducer_ && transducer_->state() == ServerState::kFailed && !is_transducer_given_up_) {
-    // A device in a hand was chosen; without a simulated transducer the attempt continues.
-    if (!has_ever_been_on_ && !options_.is_transducer_optional) return tl::unexpected(transducer_->failure());
-    is_transducer_given_up_ = options_.ends_with_needle_server;
-    if (is_transducer_given_up_)
-      notes_.push_back("the attempt continues without the probe: " + transducer_->failure().text());
-  }
-  if (has_ever_been_on_) return {};
-  progress_ = needle_->is_fresh() && transducer_ ? transducer_->activity() : needle_->activity();
-  progress_fraction_ = needle_->loading();
-  if (transducer_) progress_fraction_ = 0.5 * (progress_fraction_ + transducer_->loading());
+  const ServerSupervisor& needle = *needle_.server;
+  if (needle.state() == ServerState::kFailed && (options_.ends_with_needle_server || is_preparing()))
+    return tl::unexpected(needle.failure());
+  if (!transducer_.server || transducer_.server->state() != ServerState::kFailed || is_transducer_given_up_) return {};
+  // A device in a hand was chosen; without a simulated transducer the attempt continues.
+  const Error& failure = transducer_.server->failure();
+  if (is_preparing() && !options_.is_transducer_optional) return tl::unexpected(failure);
+  is_transducer_given_up_ = options_.ends_with_needle_server;
+  if (is_transducer_given_up_) notes_.push_back("the attempt continues without the probe: " + failure.text());
   return {};
 }
 
+AttemptLoop::Activity AttemptLoop::preparation() const {
+  const ServerSupervisor &needle = *needle_.server, *const transducer = transducer_.server.get();
+  if (transducer == nullptr) return {needle.activity(), needle.loading()};
+  return {needle.is_fresh() ? transducer->activity() : needle.activity(),
+          0.5 * (needle.loading() + transducer->loading())};
+}
+
 Status AttemptLoop::start_recording() {
-  const link::ClientView& client = needle_->client();
+  const link::ClientView& client = needle_.server->client();
   const double wanted_hz = client.status.loop.wanted_hz;
   if (wanted_hz > 0.0) performer_.rate_hz = wanted_hz;
-  const RecordOptions options{options_.identity(), options_.session, transducer_ ? case_.plane : std::nullopt,
+  const RecordOptions options{options_.identity(), options_.session, transducer_.server ? case_.plane : std::nullopt,
                               options_.longest_s};
   AttemptFacts facts;
   facts.device =
@@ -217,77 +215,66 @@ Status AttemptLoop::start_recording() {
   facts.rate_hz = performer_.rate_hz;
   facts.force_model = performer_.force_model;
   facts.device_preset = preset_of_device(client.welcome.device.name);
-  if (const SceneParameters* newest = needle_->scenes().newest()) facts.parameters = *newest;
+  if (const SceneParameters* newest = needle_.server->scenes().newest()) facts.parameters = *newest;
   TROCAR_TRY(AttemptRecord record, AttemptRecord::create(*case_.the_case, options, facts));
-  record_.emplace(std::move(record));
-  const cases::Case& the_case = *case_.the_case;
-  if (options_.has_view) {
-    pain_.emplace(the_case.task, *the_case.patient);
-    harm_.emplace(the_case.task, *the_case.patient, the_case.needle);
-  }
-  if (options_.has_view && case_.plane)
-    phases_.emplace(the_case.task, *the_case.patient, the_case.needle, the_case.plan, *case_.plane);
-  live_.emplace(performer_, *record_, command_, options_.longest_s);
-  was_needle_on_ = false;
-  needle_->take_samples();  // at rest, while the transducer's server was still busy
+  Recording& begun = state_.emplace<Recording>(performer_, std::move(record), command_, options_.longest_s);
+  if (options_.has_view) begun.watch.emplace(*case_.the_case, begun.record, case_.plane);
+  needle_.was_on = false;
+  needle_.server->take_samples();  // at rest, while the transducer's server was still busy
   return {};
 }
 
 /// Ends the attempt in order while there is still space to close its session.
-void AttemptLoop::watch_disk() {
+void AttemptLoop::watch_disk(Recording& recording) {
   constexpr auto kEvery = std::chrono::seconds(1);
   const Clock::TimePoint now = clock_.now();
-  if (!record_ || !options_.free_bytes || now - disk_polled_ < kEvery) return;
-  disk_polled_ = now;
+  if (!options_.free_bytes || now - recording.disk_polled < kEvery) return;
+  recording.disk_polled = now;
   const std::filesystem::path folder = options_.session.parent_path();
   const RecordingSpace room(folder, options_.free_bytes(folder), performer_.rate_hz);
-  disk_banner_ = room.banner();
+  recording.disk_banner = room.banner();
   if (!room.is_full() || finishes_) return;
   finishes_ = true;
-  cut_short_ = fmt::format("The disk is full ({}): the recording ended after {:.1f} s. Nothing recorded so far is lost",
-                           folder.string(), live_->active_s());
-  notes_.push_back(cut_short_);
+  recording.cut_short =
+      fmt::format("The disk is full ({}): the recording ended after {:.1f} s. Nothing recorded so far is lost",
+                  folder.string(), recording.live.active_s());
+  notes_.push_back(recording.cut_short);
 }
 
 void AttemptLoop::conclude(const Status& status) {
-  has_ended_ = true;
-  progress_ = "stopping the servers";
-  progress_fraction_ = 0.0;
-  publish(AttemptPhase::kFinishing);
-  trace_.flush();
-  needle_->end();
-  if (transducer_) transducer_->end();
+  publish(AttemptPhase::kFinishing, {"stopping the servers", 0.0});
+  needle_.server->end();
+  if (transducer_.server) transducer_.server->end();
   Result<RunResult> result = score(status);
-  const AttemptPhase end = result ? AttemptPhase::kFinished : AttemptPhase::kFailed;
-  live_.reset();
-  record_.reset();  // closes the file
-  publish(end, std::move(result));
+  AttemptUpdate last = compose(result ? AttemptPhase::kFinished : AttemptPhase::kFailed, {});
+  last.result = std::move(result);
+  state_.emplace<Ended>();  // closes the file
+  exchange_.publish(std::move(last));
 }
 
 Result<RunResult> AttemptLoop::score(const Status& status) {
-  const bool is_recorded = record_ && !record_->samples().empty();
-  const bool is_unsaved = is_recorded && options_.scores_unsaved && record_->write_failure();
+  Recording* const now = recording();
+  const bool is_recorded = now != nullptr && !now->record.samples().empty();
+  const bool is_unsaved = is_recorded && options_.scores_unsaved && now->record.write_failure();
   if (!status && !is_unsaved) return tl::unexpected(status.error());
   if (!is_recorded)
     return fail("the attempt was ended before anything was recorded", options_.session.string(), "start a new attempt");
   const Progress progress = [this](std::string_view step, double fraction) {
-    progress_ = step;
-    progress_fraction_ = fraction;
-    publish(AttemptPhase::kFinishing);
+    publish(AttemptPhase::kFinishing, {std::string(step), fraction});
   };
   RunResult result;
-  if (!record_->write_failure()) {
-    Result<RunResult> finished = record_->finish(progress);
-    if (!finished && !(options_.scores_unsaved && record_->write_failure())) return finished;
+  if (!now->record.write_failure()) {
+    Result<RunResult> finished = now->record.finish(progress);
+    if (!finished && !(options_.scores_unsaved && now->record.write_failure())) return finished;
     if (finished) result = *std::move(finished);
   }
-  if (record_->write_failure()) result = record_->finish_unsaved(progress);
-  if (result.cut_short.empty()) result.cut_short = cut_short_;
-  for (const ServerSupervisor* server : {needle_.get(), transducer_.get()})
-    if (server != nullptr) result.servers.push_back(server->figures());
-  result.ticks_missing = needle_->view().ticks_missing;
-  result.paused_s = live_->paused_s();
-  result.unseen_s = live_->unseen_s();
+  if (now->record.write_failure()) result = now->record.finish_unsaved(progress);
+  if (result.cut_short.empty()) result.cut_short = now->cut_short;
+  for (const LiveTool* tool : {&needle_, &transducer_})
+    if (tool->server) result.servers.push_back(tool->server->figures());
+  result.ticks_missing = needle_.server->view().ticks_missing;
+  result.paused_s = now->live.paused_s();
+  result.unseen_s = now->live.unseen_s();
   result.warnings.insert(result.warnings.begin(), notes_.begin(), notes_.end());
   return result;
 }

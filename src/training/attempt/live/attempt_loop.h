@@ -6,18 +6,18 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "attempt/live/attempt_exchange.h"
 #include "attempt/live/attempt_view.h"
+#include "attempt/live/attempt_watch.h"
 #include "attempt/live/live_operator.h"
 #include "attempt/record/attempt_record.h"
 #include "attempt/servers/haptic_servers.h"
 #include "attempt/tools/tool_motion.h"
 #include "cases/prepare_case.h"
-#include "metrics/harm_watch.h"
-#include "scoring/pain.h"
-#include "scoring/phase_tracker.h"
 
 namespace trocar::attempt {
 
@@ -53,6 +53,45 @@ struct LoopOptions : AttemptIdentity {
   std::function<std::optional<std::uintmax_t>(const std::filesystem::path&)> free_bytes;
 };
 
+/// Parts of an AttemptLoop.
+namespace live {
+
+/// A tool's server and what came of it.
+struct LiveTool {
+  std::unique_ptr<ServerSupervisor> server;  ///< Null: there is none.
+  std::optional<telemetry::TickSample> last;
+  double time_s = 0.0;  ///< Time of the server's last tick.
+  int activations = 0;  ///< ServerSupervisor::activations() when its ticks last began to arrive.
+  bool was_on = false;  ///< At the last poll.
+};
+
+/// What the program does now, for a progress bar.
+struct Activity {
+  std::string step;
+  double fraction = 0.0;  ///< 0..1
+};
+
+// The states of an attempt, in their order. A lost server is none of them: its supervisor brings it back.
+
+/// The servers start, load their scenes and switch their forces on. Nothing is recorded.
+struct Preparing {};
+/// From the moment at which the forces of all tools are on.
+struct Recording {
+  /// The performer must outlive it.
+  Recording(const Performer& performer, AttemptRecord begun, const tasks::HandCommand& first, double longest_s)
+      : record(std::move(begun)), live(performer, record, first, longest_s) {}
+
+  AttemptRecord record;
+  LiveOperator live;
+  std::optional<AttemptWatch> watch;  ///< Empty: nobody watches.
+  Clock::TimePoint disk_polled;
+  std::string disk_banner, cut_short;
+};
+/// The result is in the exchange, the session's file is closed.
+struct Ended {};
+
+}  // namespace live
+
 /// An attempt through live haptic servers, one step at a time: records every needle tick, responds to it, supervises
 /// the servers, and scores at the end. This is the only live loop: a window runs it on a separate thread (LiveAttempt),
 /// the command line on the caller's thread (run_realtime_session). Single-threaded. Only the restart of a server's
@@ -73,18 +112,26 @@ class AttemptLoop {
   void leave();
 
  private:
+  using LiveTool = live::LiveTool;
+  using Activity = live::Activity;
+  using Preparing = live::Preparing;
+  using Recording = live::Recording;
+  using Ended = live::Ended;
+
   // attempt_loop.cpp
   void prepare();
   Status step();
   Status take_requests();
-  Status act(const tasks::ActionRequest& request);
+  Status take_requests(Recording& recording, AttemptRequests& requests);
+  Status act(Recording& recording, const tasks::ActionRequest& request);
   bool is_needle_free() const;
   void lead(const AttemptRequests& requests);
   void stop_or_resume(bool is_stopped);
   void poll_server(ServerSupervisor& server);
   Status check_servers();
+  Activity preparation() const;
   Status start_recording();
-  void watch_disk();
+  void watch_disk(Recording& recording);
   void conclude(const Status& status);
   Result<RunResult> score(const Status& status);
 
@@ -92,19 +139,8 @@ class AttemptLoop {
   Status step_needle();
   void note_place(const telemetry::TickSample& sample);
   void answer_unrecorded(const std::vector<link::NumberedSample>& samples);
-  Status record(const std::vector<link::NumberedSample>& samples);
-  Status note_shape(const link::NumberedSample& numbered);
-  void note_tick(const telemetry::TickSample& sample);
-  void note_harm(const telemetry::TickSample& sample);
-  void note_contrast(const tasks::XrayUse& use);
-  /// Tells of an injection when it has ended.
-  void tell_injection();
-  void note_shots();
-  void note_actions();
-  void step_phases();
-  std::string hint_of(const AttemptView& view) const;
-  void add_phases(AttemptView& view) const;
-  void send_scheduled_parameters();
+  Status record(Recording& recording, const std::vector<link::NumberedSample>& samples);
+  void send_scheduled_parameters(const AttemptRecord& record);
   Status step_transducer();
 
   // attempt_publish.cpp
@@ -113,61 +149,41 @@ class AttemptLoop {
   NeedleView needle_now() const;
   TransducerView transducer_now() const;
   void add_servers(AttemptView& view) const;
-  void add_harm(AttemptView& view) const;
-  void add_times(AttemptView& view);
-  void publish(AttemptPhase phase, std::optional<Result<RunResult>> result = {});
+  AttemptUpdate compose(AttemptPhase phase, Activity activity);
+  void publish(AttemptPhase phase, Activity activity = {}) { exchange_.publish(compose(phase, std::move(activity))); }
+
+  bool is_preparing() const noexcept { return std::holds_alternative<Preparing>(state_); }
+  Recording* recording() noexcept { return std::get_if<Recording>(&state_); }
+  const Recording* recording() const noexcept { return std::get_if<Recording>(&state_); }
 
   AttemptCase case_;
   LoopOptions options_;
   Clock& clock_;
   AttemptExchange& exchange_;
   std::shared_ptr<HapticServers> servers_;  ///< Outlives the supervisors.
-  std::unique_ptr<ServerSupervisor> needle_, transducer_;
+  LiveTool needle_, transducer_;
+
   Performer performer_;
   NeedleSteering* steering_ = nullptr;  ///< The performer's operator.
+  tasks::HandCommand command_;          ///< Command of the needle's hand.
+  std::size_t next_parameters_ = 1;  ///< Index into the performer's parameters; the first ones are part of the scene.
+  telemetry::NeedleShape needle_shape_;  ///< The newest one.
+  double pressed_mm_ = 0.0;              ///< Largest of this insertion, see note_place.
+  motion::MotionDrive drive_;            ///< Of the needle's newest scene, drive_scene_.
+  std::uint64_t drive_scene_ = 0;
+
   LedTransducer led_transducer_;
   std::unique_ptr<TransducerMotion> own_motion_;
   TransducerMotion* transducer_motion_ = nullptr;  ///< Points to one of these two.
-  std::optional<AttemptRecord> record_;
-  std::optional<LiveOperator> live_;
-  tasks::HandCommand command_;       ///< Command of the needle's hand.
-  std::size_t next_parameters_ = 1;  ///< Index into the performer's parameters; the first ones are part of the scene.
-  std::optional<telemetry::TickSample> last_needle_, last_transducer_;
-  motion::MotionDrive drive_;  ///< Of the needle's newest scene, drive_scene_.
-  std::uint64_t drive_scene_ = 0;
-  telemetry::NeedleShape needle_shape_;                   ///< The newest one.
-  double needle_time_s_ = 0.0, transducer_time_s_ = 0.0;  ///< Times of the servers' last ticks.
-  double transducer_on_s_ = 0.0;                          ///< Time at which the transducer's forces were switched on.
-  /// ServerSupervisor::activations() when their ticks last began to arrive.
-  int needle_activations_ = 0, transducer_activations_ = 0;
-  double pressed_mm_ = 0.0;  ///< Largest of this insertion, see note_place.
-  bool was_needle_on_ = false, was_transducer_on_ = false;
-  bool is_transducer_given_up_ = false;  ///< The transducer was given up, with a note.
-  bool finishes_ = false, is_stopped_ = false;
-  bool has_ever_been_on_ = false, has_ended_ = false;
-  std::optional<double> contact_s_;
-  double session_s_ = 0.0, since_contact_s_ = 0.0;  ///< Active time; kept for the view after the record is closed.
-  ForceTrace trace_;
-  Clock::TimePoint disk_polled_;
-  std::string disk_banner_, cut_short_;
-  std::vector<AttemptEvent> events_;
-  std::shared_ptr<const GunShot> shot_;  ///< The last one.
-  std::size_t told_shots_ = 0;
-  std::size_t cores_ = 0;                   ///< Taken so far.
-  std::optional<scoring::PainWatch> pain_;  ///< From the begin of the recording.
-  std::optional<metrics::HarmWatch> harm_;  ///< From the begin of the recording.
-  std::optional<metrics::HarmEvent>
-      told_harm_;  ///< The last critical or major one, with the time at which it was told.
-  double told_harm_s_ = 0.0;
-  std::optional<scoring::PhaseTracker> phases_;  ///< From the begin of the recording.
-  double phases_s_ = 0.0;                        ///< Time of its last step.
-  double contrast_ml_ = 0.0;
-  std::optional<tasks::ContrastInjection> injection_;  ///< Not told yet.
-  std::size_t told_actions_ = 0;                       ///< Number of the record's actions that are among the events.
+  double transducer_on_s_ = 0.0;                   ///< Time at which the transducer's forces were switched on.
+  bool is_transducer_given_up_ = false;            ///< With a note.
+
+  std::variant<Preparing, Recording, Ended> state_;
+  bool finishes_ = false;    ///< The attempt ends with this poll.
+  bool is_stopped_ = false;  ///< The trainee stopped the forces.
   std::vector<std::string> notes_;
-  std::string message_, progress_, recovered_;
+  std::string message_, recovered_;
   int recoveries_ = 0;
-  double progress_fraction_ = 0.0;
 };
 
 }  // namespace trocar::attempt

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/clock.h"
 #include "geometry/pose.h"
 #include "metrics/harm_watch.h"
 #include "motion/patient_motion.h"
@@ -88,6 +89,7 @@ struct PhaseView {
 
 /// All data of an attempt displayed by a page at one time.
 struct AttemptView {
+  Clock::TimePoint made;  ///< When the loop published it.
   AttemptPhase phase = AttemptPhase::kStarting;
   std::string progress;            ///< Current activity in kStarting and kFinishing.
   double progress_fraction = 0.0;  ///< 0..1

@@ -60,6 +60,7 @@ class LiveAttempt : private AttemptExchange {
   using AttemptExchange::servers;
   using AttemptExchange::set_goal;
   using AttemptExchange::set_parameters;
+  using AttemptExchange::states;
   using AttemptExchange::stop_forces;
   using AttemptExchange::take_events;
   using AttemptExchange::take_forces;

@@ -79,7 +79,7 @@ TEST(LiveWorker, RendersTheNewestRequest) {
   Stage stage;
   Worker worker(stage.options());
   worker.open(std::make_unique<TestRenderer>(stage));
-  EXPECT_EQ(worker.newest(), nullptr);
+  EXPECT_EQ(worker.images().value(), nullptr);
   stage.is_gated = true;
   worker.request({1});
   stage.begun.acquire();  // in work
@@ -88,9 +88,9 @@ TEST(LiveWorker, RendersTheNewestRequest) {
   stage.go_on.release();
   worker.wait_until_idle();
   EXPECT_EQ(stage.rendered, (std::vector<int>{1, 100}));
-  ASSERT_NE(worker.newest(), nullptr);
-  EXPECT_EQ(worker.newest()->place, 100);
-  EXPECT_EQ(worker.newest()->number, 2U);
+  ASSERT_NE(worker.images().value(), nullptr);
+  EXPECT_EQ(worker.images().value()->place, 100);
+  EXPECT_EQ(worker.images().value()->number, 2U);
 }
 
 TEST(LiveWorker, DetailFollowsTheMeasuredCost) {
@@ -105,8 +105,9 @@ TEST(LiveWorker, DetailFollowsTheMeasuredCost) {
       worker.wait_until_idle();
       stage.clock->advance_ms(10.0);
     }
-    EXPECT_NEAR(worker.newest()->took_ms, ms_per_work * TestTraits().work({}, worker.newest()->level), 1e-6);
-    return worker.newest()->level;
+    EXPECT_NEAR(worker.images().value()->took_ms, ms_per_work * TestTraits().work({}, worker.images().value()->level),
+                1e-6);
+    return worker.images().value()->level;
   };
   EXPECT_EQ(level_at(5.0), TestLevel::kFine);
   EXPECT_EQ(level_at(18.0), TestLevel::kMiddle);
@@ -154,7 +155,7 @@ TEST(LiveWorker, NewSubjectDropsTheFrameInProgress) {
   stage.go_on.release();
   worker.wait_until_idle();
   EXPECT_TRUE(stage.was_stopped) << "the renderer is told";
-  EXPECT_EQ(worker.newest(), nullptr);
+  EXPECT_EQ(worker.images().value(), nullptr);
   worker.request({1});
   worker.wait_until_idle();
   EXPECT_EQ(other.rendered, (std::vector<int>{1})) << "due at once, although the place is the same";
@@ -170,12 +171,12 @@ TEST(LiveWorker, FailedFrameKeepsTheLastImageUntilTheNextRequest) {
     worker.request({place});
     worker.wait_until_idle();
     EXPECT_TRUE(worker.error());
-    EXPECT_EQ(worker.newest()->place, 1);
+    EXPECT_EQ(worker.images().value()->place, 1);
   }
   worker.request({2});
   worker.wait_until_idle();
   EXPECT_FALSE(worker.error());
-  EXPECT_EQ(worker.newest()->place, 2);
+  EXPECT_EQ(worker.images().value()->place, 2);
 }
 
 TEST(LiveWorker, HeldImageBypassesTheSchedule) {
@@ -187,15 +188,15 @@ TEST(LiveWorker, HeldImageBypassesTheSchedule) {
   stage.is_held = true;
   worker.request({5});
   worker.wait_until_idle();
-  EXPECT_EQ(worker.newest()->place, 1005);
-  const auto kept = worker.newest();
+  EXPECT_EQ(worker.images().value()->place, 1005);
+  const auto kept = worker.images().value();
   worker.request({5});
   worker.wait_until_idle();
-  EXPECT_EQ(worker.newest(), kept) << "unchanged";
+  EXPECT_EQ(worker.images().value(), kept) << "unchanged";
   stage.is_held = false;
   worker.request({1});
   worker.wait_until_idle();
-  EXPECT_EQ(worker.newest()->place, 1) << "due although it was rendered a moment ago";
+  EXPECT_EQ(worker.images().value()->place, 1) << "due although it was rendered a moment ago";
 }
 
 TEST(LiveWorker, RequestsWithoutASubjectAreDropped) {
@@ -203,7 +204,7 @@ TEST(LiveWorker, RequestsWithoutASubjectAreDropped) {
   Worker worker(stage.options());
   worker.request({1});
   worker.wait_until_idle();
-  EXPECT_EQ(worker.newest(), nullptr);
+  EXPECT_EQ(worker.images().value(), nullptr);
 }
 
 TEST(LiveWorker, ReportsAMissingThreadAndRetriesOnRequest) {
@@ -216,11 +217,11 @@ TEST(LiveWorker, ReportsAMissingThreadAndRetriesOnRequest) {
     ASSERT_TRUE(worker.error());
     EXPECT_NE(worker.error()->what.find("does not start"), std::string::npos);
     worker.wait_until_idle();
-    EXPECT_FALSE(worker.newest());
+    EXPECT_FALSE(worker.images().value());
   }
   worker.request({2});
   worker.wait_until_idle();
-  ASSERT_TRUE(worker.newest());
+  ASSERT_TRUE(worker.images().value());
   EXPECT_FALSE(worker.error());
 }
 

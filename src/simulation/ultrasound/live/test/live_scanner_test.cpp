@@ -63,7 +63,7 @@ std::shared_ptr<const ScanPicture> ask_until(LiveScanner& scanner, ScanRequest r
     request.time_s += 1.0 / 60.0;
     scanner.request(request);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    const auto picture = scanner.newest();
+    const auto picture = scanner.pictures().value();
     if (picture && is_ready(*picture)) return picture;
   }
   return nullptr;
@@ -158,7 +158,7 @@ TEST(ShownPlace, LiesDeeperUnderAPressedFace) {
 
 TEST(LiveScanner, ShowsTheNewestOfManyRequests) {
   LiveScanner scanner;
-  EXPECT_EQ(scanner.newest(), nullptr);
+  EXPECT_EQ(scanner.pictures().value(), nullptr);
   scanner.open(scene(), small_probe());
   ScanRequest request = small_request();
   for (int n = 0; n < 200; ++n) {
@@ -238,7 +238,7 @@ TEST(LiveScanner, ForgetsAClosedPatient) {
   Transducer other = small_probe();
   other.elements = 60;
   scanner.open(scene(), other);
-  EXPECT_EQ(scanner.newest(), nullptr);
+  EXPECT_EQ(scanner.pictures().value(), nullptr);
   EXPECT_EQ(scanner.cine().size, 0);
   const auto picture = ask_until(scanner, request, [](const ScanPicture&) { return true; });
   ASSERT_NE(picture, nullptr);

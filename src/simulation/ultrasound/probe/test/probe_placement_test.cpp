@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/files/folders.h"
-#include "phantom/layers.h"
+#include "phantom/layered/layers.h"
 #include "phantom/phantom.h"
 #include "ultrasound/probe/probe_contact.h"
 #include "volume/sampling.h"

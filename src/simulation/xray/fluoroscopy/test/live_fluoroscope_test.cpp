@@ -25,7 +25,7 @@ std::shared_ptr<const FluoroscopyFrame> ask_until(LiveFluoroscope& fluoroscope, 
     request.time_s += 1.0 / 60.0;
     fluoroscope.request(request);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    const auto frame = fluoroscope.newest();
+    const auto frame = fluoroscope.frames().value();
     if (frame && is_ready(*frame)) return frame;
   }
   return nullptr;
@@ -33,7 +33,7 @@ std::shared_ptr<const FluoroscopyFrame> ask_until(LiveFluoroscope& fluoroscope, 
 
 TEST(LiveFluoroscope, ShowsTheNewestOfManyRequests) {
   LiveFluoroscope fluoroscope;
-  EXPECT_EQ(fluoroscope.newest(), nullptr);
+  EXPECT_EQ(fluoroscope.frames().value(), nullptr);
   fluoroscope.open(testing::trunk());
   FluoroscopyRequest request = pedal_request();
   for (int n = 0; n < 200; ++n) {
@@ -74,7 +74,7 @@ TEST(LiveFluoroscope, RestartsWithAnotherPatient) {
   ASSERT_NE(ask_until(fluoroscope, request, [](const FluoroscopyFrame& made) { return made.dose.pulses > 5; }),
             nullptr);
   fluoroscope.open(testing::trunk());
-  EXPECT_EQ(fluoroscope.newest(), nullptr);
+  EXPECT_EQ(fluoroscope.frames().value(), nullptr);
   const auto first = ask_until(fluoroscope, request, [](const FluoroscopyFrame&) { return true; });
   ASSERT_NE(first, nullptr);
   EXPECT_LE(first->dose.pulses, 5);
