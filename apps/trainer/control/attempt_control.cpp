@@ -62,11 +62,12 @@ AttemptControl::AttemptControl(std::shared_ptr<const cases::OpenCase> open, cons
   // A full-quality picture takes long without a graphics card: needle motion cancels it.
   page_.view_3d().set_interrupt([this] {
     constexpr double kMoved_mm = 0.5;
-    return (attempt_.view().needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
+    const auto newest = attempt_.states().value();
+    return newest && (newest->needle.X_PN.p() - view_.needle.X_PN.p()).norm() > kMoved_mm;
   });
   page_.puncture().begin(kFullForce_n, choice_.mode == TrainingMode::kGuided, open_->the_case.needle.is_biopsy,
                          actions_of(open_->the_case.task, open_->the_case.needle));
-  take(first_tool(open_->the_case.task));
+  take(attempt::first_tool(open_->the_case.task));
 }
 
 AttemptControl::~AttemptControl() {
@@ -264,7 +265,7 @@ void AttemptControl::act(Action action) {
   const ActionState state = action_state();
   if (const QString reason = why_not(action, state, open_->the_case.needle); !reason.isEmpty())
     return show_notice(reason);
-  const tasks::ActionRequest request = request_of(action, state);
+  const tasks::ActionRequest request = attempt::request_of(trainee_action(action), state);
   if (action == Action::kWire) X_PN_wire_ = view_.needle.X_PN;
   attempt_.act(request);
 }
@@ -381,7 +382,7 @@ void AttemptControl::show_tools(double dt_s) {
     show_throw(tools, open_->the_case.needle);
   if (view_.shot && !view_.is_gun_loaded) show_shot(tools, *view_.shot, view_.since_shot_s, needle.depth_mm);
   hand_.add_to(tools);
-  page_.workspace().show_tools(tools);
+  page_.workspace().show_tools(std::move(tools));
   if (tasks::XrayUse use = page_.xray().use(); use != xray_) attempt_.note_xray(xray_ = use);
 }
 

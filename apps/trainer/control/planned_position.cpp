@@ -3,7 +3,6 @@
 #include <QCoreApplication>
 #include <algorithm>
 
-#include "attempt/guide/puncture_guide.h"
 #include "attempt/tools/tool_motion.h"
 #include "tasks/fit_to_patient.h"
 
@@ -47,19 +46,8 @@ void PlannedPosition::advance(attempt::PointerNeedle& needle, attempt::PointerPr
     is_probe_moving_ = !probe.approach(open_->X_PT_start, most_mm, most_rad);
 }
 
-std::optional<ActiveTool> tool_of(const tasks::Phase& phase) {
-  using Kind = tasks::ConditionKind;
-  const auto asks_for = [&](Kind kind) {
-    return std::any_of(phase.done.begin(), phase.done.end(), [&](const auto& c) { return c.kind == kind; });
-  };
-  if (attempt::is_step_of_transducer(phase)) return ActiveTool::kTransducer;
-  if (asks_for(Kind::kTipOnSkin) || asks_for(Kind::kPathClear) || asks_for(Kind::kAimsAtTarget))
-    return ActiveTool::kNeedle;
-  return std::nullopt;
-}
-
 QString planned_position_help(const tasks::Task& task, const tasks::Phase& phase) {
-  const auto tool = tool_of(phase);
+  const auto tool = attempt::tool_of(phase);
   if (!tool) return {};
   if (*tool == ActiveTool::kNeedle && task.guidance == tasks::ImagingModality::kPalpation)
     return QCoreApplication::translate("PlannedPosition",
@@ -68,12 +56,6 @@ QString planned_position_help(const tasks::Task& task, const tasks::Phase& phase
   return *tool == ActiveTool::kTransducer
              ? QCoreApplication::translate("PlannedPosition", "Stuck? Keys S, H: transducer to the planned position")
              : QCoreApplication::translate("PlannedPosition", "Stuck? Keys A, H: needle to the planned position");
-}
-
-ActiveTool first_tool(const tasks::Task& task) {
-  if (task.phases.empty())
-    return task.guidance == tasks::ImagingModality::kUltrasound ? ActiveTool::kTransducer : ActiveTool::kNeedle;
-  return attempt::is_step_of_transducer(task.phases.front()) ? ActiveTool::kTransducer : ActiveTool::kNeedle;
 }
 
 }  // namespace trocar::trainer

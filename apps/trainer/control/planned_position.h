@@ -30,12 +30,8 @@ class PlannedPosition {
   bool is_needle_moving_ = false, is_probe_moving_ = false;
 };
 
-/// The tool that a step of the task moves; empty: none, or it is in the body.
-std::optional<ActiveTool> tool_of(const tasks::Phase& phase);
 /// What a trainee who is stuck in a step of the task can do: the key to the planned position, and the finger where
 /// landmarks are palpable. Empty for steps without one.
 QString planned_position_help(const tasks::Task& task, const tasks::Phase& phase);
-/// The tool with which an attempt at the task begins.
-ActiveTool first_tool(const tasks::Task& task);
 
 }  // namespace trocar::trainer

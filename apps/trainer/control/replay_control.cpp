@@ -230,7 +230,7 @@ void ReplayControl::show_at(double time_s, bool is_moving) {
   tools.are_moving = is_moving;
   if (const attempt::GunShot* const shot = replay_.shot_at(time_s))
     show_shot(tools, *shot, time_s - shot->time_s, sample.depth_mm);
-  page_.workspace().show_tools(tools);
+  page_.workspace().show_tools(std::move(tools));
   show_xray(time_s);
   page_.forces().set_cursor(time_s);
   shown_s_ = time_s;

@@ -4,16 +4,11 @@
 #include <QPushButton>
 #include <algorithm>
 
+#include "core/result.h"
 #include "ui_kit/parts.h"
 
 namespace trocar::trainer {
 namespace {
-
-bool asks_for(const tasks::Task& task, tasks::ConditionKind kind) {
-  return std::any_of(task.phases.begin(), task.phases.end(), [&](const tasks::Phase& phase) {
-    return std::any_of(phase.done.begin(), phase.done.end(), [&](const auto& done) { return done.kind == kind; });
-  });
-}
 
 const char* name_of(Action action) {
   switch (action) {
@@ -59,12 +54,12 @@ QString text_of(Action action, const ActionState& state) {
 QString effect_of(Action action, const ActionState& state) {
   switch (action) {
     case Action::kAnaesthetic:
-      return ActionButtons::tr("Inject %1 ml of local anaesthetic").arg(kAnaesthetic_ml, 0, 'f', 0);
+      return ActionButtons::tr("Inject %1 ml of local anaesthetic").arg(attempt::kAnaesthetic_ml, 0, 'f', 0);
     case Action::kStylet:
       return state.is_stylet_drawn ? ActionButtons::tr("Reinsert the stylet")
                                    : ActionButtons::tr("Remove the stylet and see what comes out of the needle");
     case Action::kWire:
-      return ActionButtons::tr("Advance the guide wire by %1 mm").arg(kWireStep_mm, 0, 'f', 0);
+      return ActionButtons::tr("Advance the guide wire by %1 mm").arg(attempt::kWireStep_mm, 0, 'f', 0);
     case Action::kBreath:
       return state.is_breath_held ? ActionButtons::tr("Let the patient breathe again")
                                   : ActionButtons::tr("Ask the patient to hold the breath");
@@ -82,47 +77,32 @@ void set_button_text(QPushButton& button, const QString& text, const QString& to
 
 }  // namespace
 
+attempt::TraineeAction trainee_action(Action action) {
+  const auto* const found = std::ranges::find(kTraineeActions, action);
+  TROCAR_CHECK(found != std::end(kTraineeActions));
+  return static_cast<attempt::TraineeAction>(found - std::begin(kTraineeActions));
+}
+
 std::vector<Action> actions_of(const tasks::Task& task, const tasks::Needle& needle) {
   std::vector<Action> actions;
-  if (task.pain.needs_anaesthesia || asks_for(task, tasks::ConditionKind::kAnaesthetised))
-    actions.push_back(Action::kAnaesthetic);
-  if (!needle.is_biopsy && needle.stylet_diameter_mm > 0.0) actions.push_back(Action::kStylet);
-  if (!needle.is_biopsy && needle.inner_diameter_mm > 0.0) actions.push_back(Action::kAspirate);
-  if (asks_for(task, tasks::ConditionKind::kWire)) actions.push_back(Action::kWire);
-  if (asks_for(task, tasks::ConditionKind::kBreathHeld)) actions.push_back(Action::kBreath);
-  if (needle.is_biopsy) actions.push_back(Action::kLoad);
+  for (const attempt::TraineeAction action : attempt::actions_of(task, needle))
+    actions.push_back(kTraineeActions[static_cast<std::size_t>(action)]);
   return actions;
 }
 
-tasks::ActionRequest request_of(Action action, const ActionState& state) noexcept {
-  switch (action) {
-    case Action::kAnaesthetic:
-      return {tasks::ActionKind::kAnaesthetise, kAnaesthetic_ml};
-    case Action::kStylet:
-      return {state.is_stylet_drawn ? tasks::ActionKind::kReplaceStylet : tasks::ActionKind::kDrawStylet};
-    case Action::kAspirate:
-      return {tasks::ActionKind::kAspirate};
-    case Action::kWire:
-      return {tasks::ActionKind::kAdvanceWire, state.wire_mm + kWireStep_mm};
-    case Action::kBreath:
-      return {state.is_breath_held ? tasks::ActionKind::kBreathe : tasks::ActionKind::kHoldBreath};
-    case Action::kLoad:
-      return {tasks::ActionKind::kLoad};
-    default:
+QString why_not(Action action, const ActionState& state, const tasks::Needle& needle) {
+  switch (attempt::why_not(trainee_action(action), state, needle)) {
+    case attempt::Obstacle::kNotRunning:
+      return ActionButtons::tr("The attempt is not running.");
+    case attempt::Obstacle::kStyletInside:
+      return ActionButtons::tr("Remove the stylet first (%1).").arg(keys_text(Action::kStylet));
+    case attempt::Obstacle::kGunLoaded:
+      return ActionButtons::tr("The gun is loaded.");
+    case attempt::Obstacle::kNeedleInside:
+      return ActionButtons::tr("Withdraw the needle first: without a coaxial needle the gun is loaded outside.");
+    case attempt::Obstacle::kNone:
       break;
   }
-  return {};
-}
-
-QString why_not(Action action, const ActionState& state, const tasks::Needle& needle) {
-  if (!state.can_act) return ActionButtons::tr("The attempt is not running.");
-  const bool needs_bore = action == Action::kAspirate || action == Action::kWire;
-  if (needs_bore && needle.stylet_diameter_mm > 0.0 && !state.is_stylet_drawn)
-    return ActionButtons::tr("Remove the stylet first (%1).").arg(keys_text(Action::kStylet));
-  if (action != Action::kLoad) return {};
-  if (state.is_gun_loaded) return ActionButtons::tr("The gun is loaded.");
-  if (!needle.is_coaxial && !state.is_outside)
-    return ActionButtons::tr("Withdraw the needle first: without a coaxial needle the gun is loaded outside.");
   return {};
 }
 

@@ -24,7 +24,7 @@ class CorePicture;
 class ForceBar;
 class StepList;
 
-enum class ActiveTool { kNone, kNeedle, kTransducer, kFinger };
+using attempt::ActiveTool;
 
 /// Contents of the panel in one frame.
 struct PunctureFigures {
