@@ -254,7 +254,9 @@ TEST(EveryConsumer, SurfacesShowTheTag) {
   view.set_view(camera);
   /// Middle (right, down) of the pixels that show the ball, less where its middle is projected.
   const auto off_px = [&](const motion::PatientMotion& motion) -> Eigen::Vector2d {
-    view.set_motion(motion);
+    scene::SceneView frame;
+    frame.motion = motion;
+    view.show(frame);
     EXPECT_TRUE(view.render(scene::DetailPolicy::full()));
     std::vector<std::uint32_t> pixels(static_cast<std::size_t>(kSide) * kSide);
     view.copy_picture(pixels);

@@ -6,7 +6,7 @@
 #include "geometry/pose.h"
 #include "geometry/shapes.h"
 #include "motion/patient_motion.h"
-#include "scene/scene_options.h"
+#include "scene/scene_view.h"
 
 namespace trocar::trainer {
 

@@ -28,8 +28,8 @@ struct CaseContext {
 
 /// Tools that have moved.
 struct ToolContext {
-  const ToolsShown& tools;    ///< For simulated imaging, which shows the same as a real scanner.
-  const ToolsShown& visible;  ///< For all other views: without the parts that an exam hides.
+  std::shared_ptr<const ToolsShown> tools;    ///< For simulated imaging, which shows the same as a real scanner.
+  std::shared_ptr<const ToolsShown> visible;  ///< For all other views: without the parts that an exam hides.
   const cases::OpenCase& open;
 };
 

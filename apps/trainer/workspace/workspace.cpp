@@ -123,12 +123,12 @@ void Workspace::set_tip_hidden(bool is_hidden) {
   for (const auto& view : views_) view->set_tip_hidden(is_hidden);
 }
 
-void Workspace::show_tools(const ToolsShown& tools) {
+void Workspace::show_tools(ToolsShown tools) {
   frame_.are_tools_moving = tools.are_moving;
   if (tools_ && look_same(tools, *tools_)) return;
-  tools_ = tools;
-  const ToolsShown visible = is_tip_hidden_ ? seen_from_outside(tools) : tools;
-  for (const auto& view : views_) view->show_tools({tools, visible, *case_.open});
+  tools_ = std::make_shared<const ToolsShown>(std::move(tools));
+  const auto visible = is_tip_hidden_ ? std::make_shared<const ToolsShown>(seen_from_outside(*tools_)) : tools_;
+  for (const auto& view : views_) view->show_tools({tools_, visible, *case_.open});
 }
 
 void Workspace::draw(double now_s) {

@@ -43,7 +43,7 @@ class Workspace : public QMainWindow {
   /// Hidden: slices and 3D show the needle up to the skin only, slices do not follow it, and the plot has no depth. The
   /// ultrasound is not changed, as in a real scanner. The crosshairs are moved to the middle of the body.
   void set_tip_hidden(bool is_hidden);
-  void show_tools(const ToolsShown& tools);
+  void show_tools(ToolsShown tools);
   /// Draws the changed views; call once per frame. `now_s`: time of any steady clock.
   void draw(double now_s);
 
@@ -96,7 +96,7 @@ class Workspace : public QMainWindow {
   bool is_arranging_ = false;                ///< The program moves the docks, not the user.
   CaseContext case_;
   bool is_tip_hidden_ = false;
-  std::optional<ToolsShown> tools_;  ///< Tools of the last frame.
+  std::shared_ptr<const ToolsShown> tools_;  ///< Tools of the last frame; null: none yet.
   FrameContext frame_;
   std::size_t parts_shown_ = 0;  ///< Views that have opened the case.
 };

@@ -13,6 +13,7 @@
 #include "core/result.h"
 #include "scene/detail/drawing.h"
 #include "scene/detail/guide_layer.h"
+#include "scene/detail/plane_layer.h"
 #include "scene/detail/simplify.h"
 #include "scene/detail/surface_layer.h"
 #include "scene/detail/tool_layer.h"
@@ -61,6 +62,7 @@ struct PatientScene::Impl {
     return static_cast<double>(std::max(1, size[0])) / std::max(1, size[1]);
   }
   void poll();
+  void set_motion(const motion::PatientMotion& now);
   /// Sets the path again, on the skin of the displayed patient.
   void lay_path() {
     static const volume::FloatGrid kNoSkin;
@@ -116,6 +118,15 @@ void PatientScene::Impl::poll() {
     is_follow_new = true;
     has_changed = true;
   }
+}
+
+void PatientScene::Impl::set_motion(const motion::PatientMotion& now) {
+  if (now.is_same_place(motion)) return;
+  motion = now;
+  surfaces.set_motion(now);
+  planes.set_motion(now);
+  guides.set_motion(now);
+  lay_path();
 }
 
 void PatientScene::Impl::place_camera(int rows) {
@@ -185,7 +196,7 @@ void PatientScene::show_patient(std::shared_ptr<const anatomy::VirtualPatient> p
   s.target_name = aim.target_name;
   s.around_name = aim.around_name;
   s.structure_preset.reset();
-  set_motion({});
+  s.set_motion({});
   s.surfaces.clear();
   s.planes.set_patient(patient.get());
   s.guides.set_landmarks(patient->landmarks);
@@ -204,16 +215,6 @@ void PatientScene::add_surfaces(std::shared_ptr<const std::vector<anatomy::Named
   if (s.structure_preset)
     for (StructureInfo& info : structures) info.opacity = preset_opacity(info, *s.structure_preset, s.around_name);
   s.surfaces.add(std::move(structures), std::move(meshes), table);
-}
-
-void PatientScene::set_motion(const motion::PatientMotion& motion) {
-  Impl& s = *impl_;
-  if (motion.is_same_place(s.motion)) return;
-  s.motion = motion;
-  s.surfaces.set_motion(motion);
-  s.planes.set_motion(motion);
-  s.guides.set_motion(motion);
-  s.lay_path();
 }
 
 bool PatientScene::is_ready() const noexcept {
@@ -287,39 +288,16 @@ void PatientScene::set_landmarks_visible(bool are_visible) {
   if (impl_->guides.set_landmarks_visible(are_visible)) impl_->has_changed = true;
 }
 
-void PatientScene::set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model) {
-  if (impl_->tools.set_needle(shaft_P, diameter_mm, model)) impl_->has_changed = true;
-}
-
-void PatientScene::set_needle_goal(const std::optional<Segment>& ghost_P) {
-  if (impl_->tools.set_needle_goal(ghost_P)) impl_->has_changed = true;
-}
-
-void PatientScene::set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P) {
-  if (impl_->tools.set_shot(stylet_P, core_P)) impl_->has_changed = true;
-}
-
-void PatientScene::set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P) {
-  if (impl_->tools.set_throw(throw_P, notch_P)) impl_->has_changed = true;
-}
-
-void PatientScene::set_hand(const std::optional<Fingertip>& finger, std::span<const Vec3> skin_marks_P) {
-  if (impl_->hand.set(finger, skin_marks_P)) impl_->has_changed = true;
-}
-
-void PatientScene::set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face) {
-  if (impl_->tools.set_transducer(X_PT, face)) impl_->has_changed = true;
-}
-
-void PatientScene::set_ultrasound(const PictureView& picture, std::span<const std::uint8_t> alpha,
-                                  const std::array<Vec3, 3>& corners_P) {
-  if (picture.bytes.empty()) return hide_ultrasound();
-  TROCAR_CHECK(alpha.empty() || alpha.size() * picture.channels == picture.bytes.size());
-  if (impl_->tools.ultrasound().show_picture(picture, alpha, corners_P)) impl_->has_changed = true;
-}
-
-void PatientScene::hide_ultrasound() {
-  if (impl_->tools.ultrasound().hide()) impl_->has_changed = true;
+void PatientScene::show(const SceneView& view) {
+  Impl& s = *impl_;
+  s.set_motion(view.motion);
+  bool has_changed = s.tools.set_needle(view.shaft_P, view.diameter_mm, view.model);
+  has_changed |= s.tools.set_needle_goal(view.goal_P);
+  has_changed |= s.tools.set_shot(view.stylet_P, view.core_P);
+  has_changed |= s.tools.set_throw(view.throw_P, view.notch_P);
+  has_changed |= s.hand.set(view.finger, view.skin_marks_P);
+  has_changed |= s.tools.set_scan(view.scan);
+  s.has_changed = s.has_changed || has_changed;
 }
 
 void PatientScene::set_mpr(const MprOptions& options) {

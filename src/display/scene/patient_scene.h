@@ -12,10 +12,10 @@
 
 #include "core/result.h"
 #include "geometry/pose.h"
-#include "motion/patient_motion.h"
 #include "scene/camera.h"
 #include "scene/detail_policy.h"
 #include "scene/scene_options.h"
+#include "scene/scene_view.h"
 #include "scene/structure.h"
 #include "scene/tool_shapes.h"
 
@@ -38,8 +38,8 @@ class PatientScene {
                     std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes, std::optional<Vec3> target_P = {});
   /// More surfaces of the same patient, with new names. They get the opacity of the last preset.
   void add_surfaces(std::shared_ptr<const std::vector<anatomy::NamedMesh>> meshes);
-  /// Where the patient is: surfaces, planes and guidance move. The volume view stays at rest.
-  void set_motion(const motion::PatientMotion& motion);
+  /// Shows tools and patient as they are now. Call it once a frame. The volume view stays at rest.
+  void show(const SceneView& view);
   bool is_ready() const noexcept;  ///< The surfaces are loaded.
   void finish_loading();           ///< Waits for surfaces and volume.
 
@@ -60,21 +60,6 @@ class PatientScene {
   /// Replaces the patient's landmarks until another patient is shown.
   void set_landmarks(const std::vector<anatomy::Landmark>& landmarks);
   void set_landmarks_visible(bool are_visible);
-  /// With fewer than two points, there is no needle.
-  void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model);
-  void set_needle_goal(const std::optional<Segment>& ghost_P);
-  /// A biopsy gun's stylet ahead of the needle, and the place of the last core.
-  void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
-  /// Way of a biopsy gun's stylet if it were fired now, and the part of it where the notch stops; dashed.
-  void set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P);
-  /// A palpating finger, and dots of a skin marker.
-  void set_hand(const std::optional<Fingertip>& finger, std::span<const Vec3> skin_marks_P);
-  void set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
-  /// An image in 3D; corners of its outline: top left, top right, bottom left. `alpha` has one byte per pixel (0: not
-  /// drawn) or is empty (all drawn).
-  void set_ultrasound(const PictureView& picture, std::span<const std::uint8_t> alpha,
-                      const std::array<Vec3, 3>& corners_P);
-  void hide_ultrasound();
   void set_mpr(const MprOptions& options);
   const MprOptions& mpr() const noexcept;
   void set_volume_preset(VolumePreset preset);

@@ -9,28 +9,6 @@
 
 namespace trocar::scene {
 
-/// Pixels of a gray or colour image, which has to outlive it.
-struct PictureView {
-  PictureView(const image::GrayImage& gray) noexcept  // NOLINT: both kinds of images are meant
-      : columns(gray.columns), rows(gray.rows), channels(1), bytes(gray.pixels) {}
-  PictureView(const image::RgbImage& colour) noexcept  // NOLINT
-      : columns(colour.columns),
-        rows(colour.rows),
-        channels(3),
-        bytes(colour.pixels.empty() ? nullptr : colour.pixels.front().data(), 3 * colour.pixels.size()) {}
-
-  int columns, rows;
-  std::size_t channels;  ///< 1 or 3 bytes a pixel, row by row from the top left.
-  std::span<const std::uint8_t> bytes;
-};
-
-/// A fingertip on the skin. Frame P, mm.
-struct Fingertip {
-  Vec3 p_P = Vec3::Zero();          ///< Where it touches the skin.
-  Vec3 inward_P = Vec3::UnitY();    ///< Unit, into the body.
-  image::Rgb color{200, 200, 200};  ///< Of the ring around it: what it feels.
-};
-
 /// Amount of a plan that the views of a case show.
 enum class Guidance {
   kNone,    ///< No guidance, and no lesions of the segmentation: the trainee must find them in the images.

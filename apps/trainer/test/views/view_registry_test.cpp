@@ -38,7 +38,7 @@ class DummyView final : public View {
   void set_tip_hidden(bool) override { ++received_.hidden; }
   void show_tools(const ToolContext& context) override {
     ++received_.tools;
-    received_.is_visible_tip_deep = context.visible.shaft_P.back() == context.tools.shaft_P.back();
+    received_.is_visible_tip_deep = context.visible->shaft_P.back() == context.tools->shaft_P.back();
   }
   void update(const FrameContext& frame) override {
     ++received_.updates;

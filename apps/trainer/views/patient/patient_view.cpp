@@ -6,7 +6,6 @@
 #include "scene/input_watch.h"
 #include "ui_kit/theme.h"
 #include "views/patient/stereo_output.h"
-#include "views/ultrasound/scan_mask.h"
 
 namespace trocar::trainer {
 namespace {
@@ -16,19 +15,6 @@ using Clock = std::chrono::steady_clock;
 constexpr int kFirstSize_px = 64;  ///< Used before the widget has a size.
 /// Minimum interval of input checks while a picture is rendered.
 constexpr std::chrono::milliseconds kWatchEvery{4};
-
-scene::TransducerFace face_of(const ultrasound::ScanGeometry& scan) {
-  scene::TransducerFace face;
-  face.is_convex = scan.is_fan;
-  face.radius_mm = scan.radius_mm;
-  const double span = scan.line_step * (scan.lines - 1);
-  if (scan.is_fan) {
-    face.field_of_view_rad = span;
-  } else {
-    face.width_mm = span;
-  }
-  return face;
-}
 
 double in_ms(Clock::duration time) {
   return std::chrono::duration<double, std::milli>(time).count();
@@ -62,9 +48,6 @@ struct PatientView::Impl {
   Clock::time_point last_watch{};
   std::function<bool()> interrupt;
   std::function<int(int)> row_on_screen;
-  ScanMask scan_mask;
-  std::optional<Pose> X_PT;
-  ultrasound::ScanGeometry scan;
 };
 
 PatientView::PatientView(QWidget* parent) : QWidget(parent), impl_(std::make_unique<Impl>()) {
@@ -124,38 +107,6 @@ void PatientView::set_guidance_visible(bool is_visible) {
 void PatientView::set_landmarks_visible(bool are_visible) {
   are_landmarks_visible_ = are_visible;
   impl_->scene->set_landmarks_visible(are_visible);
-}
-
-void PatientView::set_needle(std::span<const Vec3> shaft_P, double diameter_mm, scene::NeedleModel model) {
-  impl_->scene->set_needle(shaft_P, diameter_mm, model);
-}
-
-void PatientView::set_needle_goal(const std::optional<Segment>& ghost_P) {
-  impl_->scene->set_needle_goal(ghost_P);
-}
-
-void PatientView::set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P) {
-  impl_->scene->set_shot(stylet_P, core_P);
-}
-
-void PatientView::set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P) {
-  impl_->scene->set_throw(throw_P, notch_P);
-}
-
-void PatientView::set_transducer(const std::optional<Pose>& X_PT, const ultrasound::ScanGeometry& scan) {
-  impl_->X_PT = X_PT;
-  impl_->scan = scan;
-  impl_->scene->set_transducer(X_PT, face_of(scan));
-}
-
-void PatientView::set_ultrasound(const scene::PictureView& picture, const std::array<Vec3, 3>& corners_P) {
-  if (!impl_->X_PT || picture.bytes.empty()) return impl_->scene->set_ultrasound(picture, {}, corners_P);
-  impl_->scene->set_ultrasound(
-      picture, impl_->scan_mask.of(picture.columns, picture.rows, corners_P, *impl_->X_PT, impl_->scan), corners_P);
-}
-
-void PatientView::hide_ultrasound() {
-  impl_->scene->hide_ultrasound();
 }
 
 std::vector<scene::StructureInfo> PatientView::structures() const {

@@ -13,13 +13,13 @@
 
 #include "scene/detail_policy.h"
 #include "scene/patient_scene.h"
-#include "ultrasound/probe/scan_geometry.h"
 
 namespace trocar::trainer {
 
-/// The patient in 3D with tools and guidance. Setters are cheap and may be called every frame; `draw()` renders if
-/// something has changed or the image quality must increase. The view is drawn off-screen and painted as an image: with
-/// an OpenGL widget, Qt composes the whole window by OpenGL, which costs more processor time than drawing the patient.
+/// The patient in 3D with tools and guidance (scene().show()). Setters are cheap and may be called every frame;
+/// `draw()` renders if something has changed or the image quality must increase. The view is drawn off-screen and
+/// painted as an image: with an OpenGL widget, Qt composes the whole window by OpenGL, which costs more processor time
+/// than drawing the patient.
 ///
 /// Mouse: left drag rotates, middle drag or Shift + left drag pans, right drag or wheel zooms, double click picks.
 /// Keys: 1..6 views (anterior, oblique, right, left, posterior, cranial), T follow the needle's tip, L view along the
@@ -49,18 +49,6 @@ class PatientView : public QWidget {
   bool is_guidance_visible() const noexcept { return is_guidance_visible_; }
   void set_landmarks_visible(bool are_visible);
   bool are_landmarks_visible() const noexcept { return are_landmarks_visible_; }
-
-  /// From the hub to the tip; fewer than two points: no needle.
-  void set_needle(std::span<const Vec3> shaft_P, double diameter_mm, scene::NeedleModel model);
-  /// Needle pose of the hand, hub to tip; empty if it equals the pose of the needle.
-  void set_needle_goal(const std::optional<Segment>& ghost_P);
-  void set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
-  void set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P);
-  void set_transducer(const std::optional<Pose>& X_PT, const ultrasound::ScanGeometry& scan);
-  /// Corners of the image outline in P: top left, top right, bottom left. Pixels outside of the scan of the last
-  /// set_transducer are transparent; without a transducer, no pixel is. An empty image hides it.
-  void set_ultrasound(const scene::PictureView& picture, const std::array<Vec3, 3>& corners_P);
-  void hide_ultrasound();
 
   std::vector<scene::StructureInfo> structures() const;
   void set_opacity(std::string_view name, double opacity);

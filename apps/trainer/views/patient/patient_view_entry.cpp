@@ -8,6 +8,7 @@
 #include "ultrasound/live/scan_picture.h"
 #include "ultrasound/scanner/scan_annotation.h"
 #include "views/patient/patient_view.h"
+#include "views/ultrasound/scan_mask.h"
 
 namespace trocar::trainer {
 namespace {
@@ -17,6 +18,19 @@ namespace {
 constexpr double kFrameOfOne_ms = 32.0, kFrameOfTwo_ms = 20.0;
 
 enum class Role { kMain, kSide };
+
+scene::TransducerFace face_of(const ultrasound::ScanGeometry& scan) {
+  scene::TransducerFace face;
+  face.is_convex = scan.is_fan;
+  face.radius_mm = scan.radius_mm;
+  const double span = scan.line_step * (scan.lines - 1);
+  if (scan.is_fan) {
+    face.field_of_view_rad = span;
+  } else {
+    face.width_mm = span;
+  }
+  return face;
+}
 
 class PatientViewEntry final : public View {
  public:
@@ -32,7 +46,8 @@ class PatientViewEntry final : public View {
   bool open(const CaseContext& context) override {
     case_ = context;
     paths_ = {context.open->the_case.plan.line_P, {}};
-    picture_number_ = 0;
+    picture_.reset();
+    tools_ = std::make_shared<const ToolsShown>();
     has_patient_ = false;
     if (role_ == Role::kMain) show_patient();
     return has_patient_;
@@ -49,14 +64,7 @@ class PatientViewEntry final : public View {
   }
 
   void show_tools(const ToolContext& context) override {
-    const tasks::Needle& needle = context.open.the_case.needle;
-    const ToolsShown& tools = context.visible;
-    view_->scene().set_motion(tools.motion);
-    view_->set_needle(tools.shaft_P, needle.outer_diameter_mm, scene::needle_model(needle.model));
-    view_->set_needle_goal(tools.goal_P);
-    view_->set_shot(tools.stylet_P, tools.core_P);
-    view_->set_throw(tools.throw_P, tools.notch_P);
-    view_->scene().set_hand(tools.finger, tools.skin_marks_P);
+    tools_ = context.visible;
     has_whole_picture_ = false;
   }
 
@@ -72,7 +80,9 @@ class PatientViewEntry final : public View {
     if (!view_->isVisible()) return;
     // The surfaces of the side view cost seconds of computing: only where it is visible.
     if (!has_patient_ && case_.open) show_patient();
-    show_picture(frame.are_tools_moving);
+    if (!case_.open) return;
+    take_picture(frame.are_tools_moving);
+    show_frame();
     // Two views share the time of one; while tools move the side view is drawn every other time.
     const auto& all = context_.all_3d_views;
     const bool has_both = std::count_if(all.begin(), all.end(), [](const auto* v) { return v->isVisible(); }) > 1;
@@ -116,15 +126,42 @@ class PatientViewEntry final : public View {
 
   /// The newest ultrasound image as a plane. With the tools at rest one in full detail stays there: its noise alone is
   /// not worth drawing the patient again.
-  void show_picture(bool are_tools_moving) {
-    const auto picture = context_.ultrasound_picture();
-    if (!picture || picture->number == picture_number_ || (has_whole_picture_ && !are_tools_moving)) return;
-    picture_number_ = picture->number;
-    has_whole_picture_ = picture->detail == ultrasound::ScanDetail::kFull;
-    view_->set_transducer(picture->X_PT, picture->scan);
-    const bool is_gray = picture->colour.pixels.empty();
-    view_->set_ultrasound(is_gray ? scene::PictureView(picture->gray) : scene::PictureView(picture->colour),
-                          picture->corners_P);
+  void take_picture(bool are_tools_moving) {
+    auto newest = context_.ultrasound_picture();
+    if (!newest || newest == picture_ || (has_whole_picture_ && !are_tools_moving)) return;
+    picture_ = std::move(newest);
+    has_whole_picture_ = picture_->detail == ultrasound::ScanDetail::kFull;
+  }
+
+  void show_frame() {
+    const tasks::Needle& needle = case_.open->the_case.needle;
+    scene::SceneView view;
+    view.motion = tools_->motion;
+    view.shaft_P = tools_->shaft_P;
+    view.diameter_mm = needle.outer_diameter_mm;
+    view.model = scene::needle_model(needle.model);
+    view.goal_P = tools_->goal_P;
+    view.stylet_P = tools_->stylet_P;
+    view.core_P = tools_->core_P;
+    view.throw_P = tools_->throw_P;
+    view.notch_P = tools_->notch_P;
+    view.finger = tools_->finger;
+    view.skin_marks_P = tools_->skin_marks_P;
+    if (picture_) view.scan = scan_of(*picture_);
+    view_->scene().show(view);
+  }
+
+  /// Pixels outside of the scan are transparent.
+  scene::ScanView scan_of(const ultrasound::ScanPicture& picture) {
+    scene::ScanView scan;
+    scan.X_PT = picture.X_PT;
+    scan.face = face_of(picture.scan);
+    scan.picture =
+        picture.colour.pixels.empty() ? scene::PictureView(picture.gray) : scene::PictureView(picture.colour);
+    scan.alpha = mask_.of(scan.picture.columns, scan.picture.rows, picture.corners_P, picture.X_PT, picture.scan);
+    scan.corners_P = picture.corners_P;
+    scan.number = picture.number;
+    return scan;
   }
 
   Role role_;
@@ -134,7 +171,9 @@ class PatientViewEntry final : public View {
   ExpertPaths paths_;
   bool has_patient_ = false;
   std::size_t surface_groups_ = 0;  ///< Groups of the case's surfaces that the view has.
-  std::uint64_t picture_number_ = 0;
+  std::shared_ptr<const ToolsShown> tools_ = std::make_shared<const ToolsShown>();
+  std::shared_ptr<const ultrasound::ScanPicture> picture_;
+  ScanMask mask_;
   bool has_whole_picture_ = false;  ///< The picture has full detail.
 };
 

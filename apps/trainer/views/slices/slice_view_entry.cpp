@@ -42,9 +42,9 @@ class SliceViewEntry final : public View {
 
   void show_tools(const ToolContext& context) override {
     tools_ = context.visible;
-    marks_->set_shot(tools_.stylet_P, tools_.core_P);
-    marks_->set_throw(tools_.throw_P, tools_.notch_P);
-    marks_->set_skin_marks(tools_.skin_marks_P);
+    marks_->set_shot(tools_->stylet_P, tools_->core_P);
+    marks_->set_throw(tools_->throw_P, tools_->notch_P);
+    marks_->set_skin_marks(tools_->skin_marks_P);
     is_stale_ = true;
   }
 
@@ -52,10 +52,10 @@ class SliceViewEntry final : public View {
   void update(const FrameContext& frame) override {
     if (!is_stale_ || (frame.are_tools_moving && (frame.number + phase_) % 2 != 0)) return;
     is_stale_ = false;
-    view_->set_motion(tools_.motion);
-    view_->set_needle(tools_.shaft_P);
-    if (!tools_.shaft_P.empty()) view_->set_needle_frame(tools_.X_PN);
-    if (tools_.focus_P) view_->set_focus(*tools_.focus_P);
+    view_->set_motion(tools_->motion);
+    view_->set_needle(tools_->shaft_P);
+    if (!tools_->shaft_P.empty()) view_->set_needle_frame(tools_->X_PN);
+    if (tools_->focus_P) view_->set_focus(*tools_->focus_P);
   }
 
  private:
@@ -63,7 +63,7 @@ class SliceViewEntry final : public View {
   SliceMarks* marks_;  ///< Over it.
   std::size_t phase_;
   slices::Box body_P_;
-  ToolsShown tools_;
+  std::shared_ptr<const ToolsShown> tools_ = std::make_shared<const ToolsShown>();
   bool is_stale_ = false;  ///< It does not show `tools_` yet.
 };
 

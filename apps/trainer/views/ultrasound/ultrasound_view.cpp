@@ -200,7 +200,7 @@ QString UltrasoundView::flow_message() const {
 }
 
 void UltrasoundView::take_picture(double now_s) {
-  std::shared_ptr<const ultrasound::ScanPicture> newest = scanner_.newest();
+  std::shared_ptr<const ultrasound::ScanPicture> newest = scanner_.pictures().value();
   const ultrasound::CineState cine = scanner_.cine();
   const bool is_state_new = !is_same(cine, shown_cine_);
   const bool is_freezing_new = cine.is_frozen != shown_cine_.is_frozen || cine.is_playing != shown_cine_.is_playing;

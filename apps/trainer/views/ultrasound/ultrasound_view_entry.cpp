@@ -52,12 +52,12 @@ class UltrasoundViewEntry final : public View {
   }
 
   void show_tools(const ToolContext& context) override {
-    std::vector<Vec3> metal_P = context.tools.shaft_P;  // the stylet also reflects sound
-    if (context.tools.stylet_P) metal_P.push_back(context.tools.stylet_P->b);
+    std::vector<Vec3> metal_P = context.tools->shaft_P;  // the stylet also reflects sound
+    if (context.tools->stylet_P) metal_P.push_back(context.tools->stylet_P->b);
     view_->set_needle(metal_P, context.open.the_case.needle.outer_diameter_mm);
-    view_->set_throw(context.visible.throw_P, context.visible.notch_P);
-    view_->set_motion(context.tools.motion);
-    if (context.tools.X_PT) view_->set_transducer_pose(*context.tools.X_PT);
+    view_->set_throw(context.visible->throw_P, context.visible->notch_P);
+    view_->set_motion(context.tools->motion);
+    if (context.tools->X_PT) view_->set_transducer_pose(*context.tools->X_PT);
   }
 
   void take_later_data() override {

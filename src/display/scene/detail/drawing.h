@@ -14,6 +14,7 @@
 #include "image/image.h"
 #include "scene/camera.h"
 #include "scene/scene_options.h"
+#include "scene/scene_view.h"
 #include "scene/structure.h"
 
 class vtkPolyDataMapper;

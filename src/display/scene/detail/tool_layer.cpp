@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/result.h"
 #include "scene/tool_shapes.h"
 
 namespace trocar::scene::detail {
@@ -193,6 +194,21 @@ bool ToolLayer::set_transducer(const std::optional<Pose>& X_PT, const Transducer
   }
   transducer_->SetUserMatrix(matrix);
   return true;
+}
+
+bool ToolLayer::set_picture(const ScanView& scan) {
+  if (scan.picture.bytes.empty()) return ultrasound_.hide();
+  TROCAR_CHECK(scan.alpha.empty() || scan.alpha.size() * scan.picture.channels == scan.picture.bytes.size());
+  if (scan.number > 0 && scan.number == picture_number_) return false;
+  picture_number_ = scan.number;
+  return ultrasound_.show_picture(scan.picture, scan.alpha, scan.corners_P);
+}
+
+bool ToolLayer::set_scan(const std::optional<ScanView>& scan) {
+  const bool has_moved =
+      set_transducer(scan ? std::optional(scan->X_PT) : std::nullopt, scan ? scan->face : TransducerFace{});
+  if (!scan) picture_number_ = 0;
+  return (scan ? set_picture(*scan) : ultrasound_.hide()) || has_moved;
 }
 
 void ToolLayer::set_transducer_translucent(bool is_translucent) {

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "geometry/pose.h"
 #include "scene/detail/drawing.h"
-#include "scene/scene_options.h"
+#include "scene/scene_view.h"
 #include "scene/tool_shapes.h"
 
 namespace trocar::scene::detail {
@@ -28,19 +29,19 @@ class ToolLayer {
   bool set_needle_goal(const std::optional<Segment>& ghost_P);
   bool set_shot(const std::optional<Segment>& stylet_P, const std::optional<Segment>& core_P);
   bool set_throw(const std::optional<Segment>& throw_P, const std::optional<Segment>& notch_P);
-  bool set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
+  bool set_scan(const std::optional<ScanView>& scan);
   /// Draws the transducer translucent.
   void set_transducer_translucent(bool is_translucent);
   /// Smallest diameter of the drawn needle.
   void set_least_thickness(double least_mm);
 
-  PictureQuad& ultrasound() noexcept { return ultrasound_; }
   /// Straight segment from hub to tip; empty without a needle.
   std::optional<Segment> needle_P() const noexcept;
-  const std::optional<Pose>& X_PT() const noexcept { return X_PT_; }
 
  private:
   void rebuild_needle();
+  bool set_transducer(const std::optional<Pose>& X_PT, const TransducerFace& face);
+  bool set_picture(const ScanView& scan);
 
   std::vector<Vec3> shaft_P_;
   double diameter_mm_ = 1.0;
@@ -55,6 +56,7 @@ class ToolLayer {
   vtkSmartPointer<vtkActor> throw_;
   vtkSmartPointer<vtkActor> transducer_;
   PictureQuad ultrasound_;
+  std::uint64_t picture_number_ = 0;  ///< Of the shown image; 0: it has none.
 };
 
 /// A palpating fingertip, and dots of a skin marker.

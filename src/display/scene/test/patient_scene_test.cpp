@@ -43,8 +43,20 @@ class PatientSceneTest : public ::testing::Test {
     });
     return image;
   }
+  void move(const motion::PatientMotion& motion) {
+    frame.motion = motion;
+    scene->show(frame);
+  }
+  void show_needle(std::span<const Vec3> shaft_P, double diameter_mm, NeedleModel model = NeedleModel::kChiba) {
+    frame.shaft_P = shaft_P;
+    frame.diameter_mm = diameter_mm;
+    frame.model = model;
+    scene->show(frame);
+  }
+
   std::unique_ptr<PatientScene> scene;
   std::shared_ptr<const anatomy::VirtualPatient> patient;
+  SceneView frame;
 };
 
 bool is_bright(const image::Rgb& c) {
@@ -96,13 +108,13 @@ TEST_F(PatientSceneTest, ShowsTheBodyBeforeItsSurfacesExist) {
 TEST_F(PatientSceneTest, SurfacesMoveWithThePatientAtEveryDetail) {
   const auto model = motion::testing::uniform_model({0.0, 0.0, -30.0});
   for (const Detail& detail : {DetailPolicy::full(), DetailPolicy::moving(0), DetailPolicy::moving(2)}) {
-    scene->set_motion({});
+    move({});
     const auto rest = middle_of(draw(detail), is_reddish);
-    scene->set_motion({model.get(), {.drivers = {1.0}}});
+    move({model.get(), {.drivers = {1.0}}});
     const auto moved = middle_of(draw(detail), is_reddish);
     EXPECT_NEAR(moved.x(), rest.x(), 1.0);
     EXPECT_NEAR(moved.y() - rest.y(), 30.0 * 80.0 / 105.0, 2.5);
-    scene->set_motion({});
+    move({});
     EXPECT_NEAR(middle_of(draw(detail), is_reddish).y(), rest.y(), 0.01);
   }
 }
@@ -114,7 +126,7 @@ TEST_F(PatientSceneTest, PicksAMovedSurfaceAtItsNewPosition) {
   ASSERT_TRUE(at(before.y()));
   const Vec3 rest_P = *at(before.y());
   const auto model = motion::testing::uniform_model({0.0, 0.0, -50.0});
-  scene->set_motion({model.get(), {.drivers = {1.0}}});
+  move({model.get(), {.drivers = {1.0}}});
   EXPECT_FALSE(at(before.y()));
   const auto now = middle_of(draw(), is_reddish);
   ASSERT_TRUE(at(now.y()));
@@ -142,22 +154,24 @@ TEST_F(PatientSceneTest, DrawsTheNeedleAtItsPose) {
   const Vec3 shaft_P[3] = {{-60, 0, -50}, {0, 0, -48}, {60, 0, -40}};
   for (const NeedleModel model : {NeedleModel::kChiba, NeedleModel::kTuohy, NeedleModel::kQuincke,
                                   NeedleModel::kBiopsyGun, NeedleModel::kTrocar}) {
-    scene->set_needle(shaft_P, 2.0, model);
+    show_needle(shaft_P, 2.0, model);
     const auto middle = middle_of(draw(), is_bright);
     EXPECT_NEAR(middle.y(), 80.0 + 48.0 * 80.0 / 105.0, 12.0) << static_cast<int>(model);
   }
-  scene->set_needle({}, 2.0, NeedleModel::kChiba);
+  show_needle({}, 2.0, NeedleModel::kChiba);
   EXPECT_EQ(count_of(draw(), is_bright), 0);
 }
 
 TEST_F(PatientSceneTest, DrawsAShotUntilItIsCleared) {
   scene->apply_preset(StructurePreset::kBones);
   const int before = count_of(draw(), is_orange);
-  scene->set_shot(Segment{{-60, 0, -50}, {0, 0, -50}}, Segment{{10, 0, -50}, {60, 0, -50}});
+  frame.stylet_P = Segment{{-60, 0, -50}, {0, 0, -50}};
+  frame.core_P = Segment{{10, 0, -50}, {60, 0, -50}};
+  scene->show(frame);
   const image::RgbImage image = draw();
   EXPECT_GT(count_of(image, is_orange), before + 20);
   EXPECT_GT(count_of(image, is_bright), 20);
-  scene->set_shot({}, {});
+  scene->show({});
   EXPECT_EQ(count_of(draw(), is_orange), before);
 }
 
@@ -170,19 +184,21 @@ TEST_F(PatientSceneTest, DrawsTheThrowDashedAndThickerAtTheNotch) {
     return count;
   };
   const Segment throw_P{{-60, 0, -50}, {60, 0, -20}};  // oblique: not between two rows of pixels
-  scene->set_throw(throw_P, {});
+  frame.throw_P = throw_P;
+  scene->show(frame);
   const int thin = changed(draw());
   EXPECT_GT(thin, 20);
-  scene->set_throw(throw_P, Segment{{-60, 0, -50}, {40, 0, -25}});
+  frame.notch_P = Segment{{-60, 0, -50}, {40, 0, -25}};
+  scene->show(frame);
   EXPECT_GT(changed(draw()), thin);
-  scene->set_throw({}, {});
+  scene->show({});
   EXPECT_EQ(changed(draw()), 0);
 }
 
 TEST_F(PatientSceneTest, ThinNeedleStaysVisibleFromAfar) {
   scene->apply_preset(StructurePreset::kBones);
   const Vec3 shaft_P[2] = {{-60, 0, -50}, {60, 0, -50}};
-  scene->set_needle(shaft_P, 0.05, NeedleModel::kQuincke);
+  show_needle(shaft_P, 0.05, NeedleModel::kQuincke);
   EXPECT_GT(count_of(draw(), is_bright), 60);
 }
 
@@ -191,15 +207,20 @@ TEST_F(PatientSceneTest, DrawsTheUltrasoundImageInItsPlaneWithinTheFan) {
   const image::RgbImage picture(10, 10, {255, 0, 255});
   std::vector<std::uint8_t> alpha(100, 255);
   const std::array<Vec3, 3> corners_P = {Vec3(-50, -110, 50), Vec3(50, -110, 50), Vec3(-50, -110, -50)};
-  scene->set_ultrasound(picture, alpha, corners_P);
+  frame.scan.emplace();
+  frame.scan->X_PT = Pose(Mat3::Identity(), {0.0, 0.0, 1000.0});  // out of sight
+  frame.scan->picture = picture;
+  frame.scan->alpha = alpha;
+  frame.scan->corners_P = corners_P;
+  scene->show(frame);
   const int whole = count_of(draw(), is_magenta);
   EXPECT_GT(whole, 3000);
   std::fill(alpha.begin(), alpha.begin() + 50, std::uint8_t{0});  // the upper half
-  scene->set_ultrasound(picture, alpha, corners_P);
+  scene->show(frame);
   const image::RgbImage half = draw();
   EXPECT_NEAR(count_of(half, is_magenta), 0.5 * whole, 0.08 * whole);
   EXPECT_GT(middle_of(half, is_magenta).y(), 90.0);
-  scene->hide_ultrasound();
+  scene->show({});
   EXPECT_EQ(count_of(draw(), is_magenta), 0);
 }
 
@@ -318,7 +339,7 @@ TEST_F(PatientSceneTest, RendersOneImagePerEyeWithParallax) {
   scene->apply_preset(StructurePreset::kBones);
   // Before the plane without parallax: what is near stands farther right for the left eye.
   const Vec3 shaft_P[2] = {{-30, -90, 0}, {30, -90, 0}};
-  scene->set_needle(shaft_P, 4.0, NeedleModel::kChiba);
+  show_needle(shaft_P, 4.0, NeedleModel::kChiba);
   draw();
   CameraView view = scene->view();
   view.focus_P = {0, 0, 0};
@@ -378,7 +399,7 @@ TEST_F(PatientSceneTest, EvenScreenRowsShowTheLeftEyeAtAnyOffset) {
   scene->apply_preset(StructurePreset::kBones);
   // Before the plane without parallax: what is near stands farther right for the left eye.
   const Vec3 shaft_P[2] = {{0, -90, -60}, {0, -90, 60}};
-  scene->set_needle(shaft_P, 4.0, NeedleModel::kChiba);
+  show_needle(shaft_P, 4.0, NeedleModel::kChiba);
   draw();
   CameraView view = scene->view();
   view.focus_P = {0, 0, 0};
