@@ -90,8 +90,13 @@ Result<TrainerChoice> with_arguments(TrainerChoice choice, const Arguments& argu
   std::error_code error;
   if (fs::is_directory(*arguments.patient, error)) {
     choice.patient = fs::absolute(*arguments.patient).string();
-  } else if (phantom::find_embedded_patient(*arguments.patient)) {
+  } else if (const auto embedded = phantom::find_embedded_patient(*arguments.patient)) {
     choice.patient = *arguments.patient;
+    const bool is_served = std::ranges::find(embedded->tasks, choice.task) != embedded->tasks.end();
+    if (!is_served && arguments.task)
+      return fail_usage("the patient is not for this task", fmt::format("{}, {}", choice.patient, choice.task),
+                        "leave out --task, or choose another patient (trocar patient list)");
+    if (!is_served && !embedded->tasks.empty()) choice.task = embedded->tasks.front();  // not that of the last time
   } else {
     return fail_usage("no such patient", *arguments.patient,
                       "name a patient folder or an embedded patient (trocar patient list)");

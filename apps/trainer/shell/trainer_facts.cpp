@@ -29,6 +29,8 @@ QVariantMap TrainerFlow::facts() const {
     const auto* found = page.findChild<QLabel*>(QString::fromLatin1(label));
     return found != nullptr && found->isVisible() ? found->text() : QString();
   };
+  facts[QStringLiteral("chosen_task")] = to_qt(window_.start().choice().task);
+  facts[QStringLiteral("chosen_patient")] = to_qt(window_.start().choice().patient);
   facts[QStringLiteral("history")] = text_of(window_.start(), "history-text");
   facts[QStringLiteral("comparison")] = text_of(window_.work(), "feedback-comparison");
   facts[QStringLiteral("person_message")] = text_of(window_.start(), "person-message");

@@ -361,6 +361,21 @@ TEST_F(WindowTest, ReplaysAnAttemptAfterACrash) {
   expect_played(run({QStringLiteral("--script"), again}));
 }
 
+TEST_F(WindowTest, TheNamedPatientBringsItsTask) {
+  const auto chosen = [&](const char* task, const char* patient) {
+    return write("chosen.txt",
+                 QByteArray("expect chosen_task is ") + task + "\nexpect chosen_patient is " + patient + "\n");
+  };
+  const QString patient = QStringLiteral("--patient"), task = QStringLiteral("--task"),
+                script = QStringLiteral("--script");
+  // The start page would offer a liver biopsy.
+  expect_played(run({patient, QStringLiteral("lumbar-2"), script, chosen("lumbar-puncture", "lumbar-2")}));
+  expect_played(run({patient, QStringLiteral("biopsy-1"), script, chosen("liver-biopsy", "biopsy-1")}));
+  const Played refused = run({task, QStringLiteral("lumbar-puncture"), patient, QStringLiteral("biopsy-1")});
+  EXPECT_EQ(refused.exit_status, 2);
+  EXPECT_TRUE(refused.output.contains(QStringLiteral("not for this task"))) << refused.output.toStdString();
+}
+
 TEST_F(WindowTest, BenchmarkDoesNotChangeSettings) {
   const QByteArray kept("[desk]\nlayout=Slices\n");
   ASSERT_TRUE(QDir(folder.path()).mkpath(QStringLiteral("config/trocar")));
