@@ -8,7 +8,7 @@
 #include "bench/benchmarks.h"
 #include "bench/haptics/flat_scene.h"
 #include "core/files/folders.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 #include "lab/haptics/push_trial.h"
 
 namespace trocar::bench {

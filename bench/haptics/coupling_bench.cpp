@@ -12,7 +12,7 @@
 #include "bench/haptics/flat_scene.h"
 #include "core/files/folders.h"
 #include "core/parallel.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 #include "lab/haptics/stability_trial.h"
 
 namespace trocar::bench {

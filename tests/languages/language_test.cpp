@@ -10,7 +10,9 @@
 #include "attempt/live/attempt_view.h"
 #include "cases/testing/cached_case.h"
 #include "core/files/folders.h"
+#include "core/text.h"
 #include "end_to_end/attempt.h"
+#include "metrics/metric.h"
 #include "phantom/phantom.h"
 #include "report/html_report.h"
 #include "tasks/action.h"
@@ -112,9 +114,15 @@ TEST(Languages, TranslateEveryTask) {
       for (const tasks::Phase& phase : task.phases) {
         lacking.check(phase.title);
         lacking.check(phase.why);
+        for (const tasks::Condition& condition : phase.done) {
+          std::string words = tasks::condition_words(condition);
+          words.front() = ascii::to_upper(words.front());  // as the step shows it
+          lacking.check(words);
+        }
       }
     }
     for (const tasks::Needle& needle : *needles) lacking.check(needle.title);
+    for (const metrics::MetricDescription& metric : metrics::metric_catalogue()) lacking.check(metric.title);
     for (const char* reason :
          {tasks::kServerWasAway, tasks::kServerSentNothing, tasks::kProgramDidNotRun, tasks::kSamplesWereLost})
       lacking.check(reason);

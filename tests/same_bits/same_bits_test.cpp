@@ -15,9 +15,9 @@
 
 #include "attempt/offline/run_session.h"
 #include "cases/testing/phantom_case.h"
+#include "core/content_hash.h"
 #include "core/files/folders.h"
 #include "core/files/output_file.h"
-#include "core/random.h"
 #include "core/testing/source_dir.h"
 #include "volume/testing/simd_targets.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/files/folders.h"
 #include "devices/device_spec.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 
 namespace trocar::servers_test {
 namespace {

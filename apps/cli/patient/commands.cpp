@@ -17,7 +17,7 @@
 #include "core/files/output_file.h"
 #include "core/progress.h"
 #include "core/text.h"
-#include "io/dicom/dicom_folder.h"
+#include "io/ct_series/dicom_folder.h"
 #include "io/patient/build_from_files.h"
 #include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"

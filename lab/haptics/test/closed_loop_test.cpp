@@ -6,7 +6,7 @@
 
 #include "core/files/folders.h"
 #include "core/testing/allocation_guard.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 #include "haptics/test/layered_patient.h"
 #include "lab/haptics/push_trial.h"
 #include "lab/haptics/stability_trial.h"

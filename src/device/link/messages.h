@@ -199,7 +199,7 @@ struct Reply {
   /// parameters. A scene takes effect at the first tick whose batch has its number; that batch may arrive before this
   /// reply.
   std::uint64_t scene = 0;                ///< 0: no new scene. Increases while the server runs.
-  std::vector<std::string> options = {};  ///< "coupling.stiffness=0.8", see haptics/scene_options.h.
+  std::vector<std::string> options = {};  ///< "coupling.stiffness=0.8", see haptics/option_texts.h.
   std::string tissues_toml = {};          ///< The whole table.
 };
 

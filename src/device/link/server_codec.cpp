@@ -158,10 +158,8 @@ void read_samples(const flatbuffers::Vector<const wire::Sample*>& samples, Inspe
     return in.refuse("misaligned ticks", "samples");
   }
   result.reserve(samples.size());
-  telemetry::TickSample sample;
   for (const wire::Sample* packed : samples) {
-    read_sample(*packed, in, sample);
-    result.push_back(sample);
+    read_sample(*packed, in, result.emplace_back());
     if (!in.is_valid()) return;
   }
 }

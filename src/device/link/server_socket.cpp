@@ -198,9 +198,9 @@ void ServerSocket::Impl::send_reply(Peer& peer, Reply reply) {
   if (!send(peer, message, kMostBytesOut + kMostReplyBytesOut)) peer.has_missed_reply = true;
 }
 
-void ServerSocket::send_batch(const StateBatch& batch) {
+void ServerSocket::send_batch(StateBatch batch) {
   if (impl_->peers.all().empty()) return;
-  ServerMessage message{0, 0, batch};
+  ServerMessage message{0, 0, std::move(batch)};
   for (Peer& peer : impl_->peers.all()) {
     if (!impl_->send(peer, message)) ++impl_->batches_not_taken;
   }

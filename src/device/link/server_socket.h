@@ -49,7 +49,7 @@ class ServerSocket {
   /// server, tool and device of `welcome`. Answers a heartbeat with a Pong and returns the heartbeat.
   std::optional<Received> receive(int wait_ms, const Welcome& welcome, double now_s);
   /// Sends a batch to every peer; batches for a peer with a full queue are dropped and counted.
-  void send_batch(const StateBatch& batch);
+  void send_batch(StateBatch batch);
   /// Sends a reply. Replies are never dropped: a peer that reads too slowly for replies loses its session instead.
   void send_reply(std::uint64_t session, const Reply& reply);
   /// Removes clients that timed out or missed a reply, and closes connections that never sent Hello.

@@ -101,10 +101,7 @@ void LinkThread::save(Flight flight) {
 
 void LinkThread::flush() {
   if (batch_.samples.empty() && !batch_.status) return;
-  socket_.send_batch(batch_);
-  batch_.samples.clear();
-  batch_.shape.reset();
-  batch_.status.reset();
+  socket_.send_batch(std::exchange(batch_, {}));
 }
 
 void LinkThread::take(const link::Received& received) {

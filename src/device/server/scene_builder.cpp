@@ -7,7 +7,7 @@
 #include <new>
 
 #include "anatomy/tissue/tissue_settings.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 #include "stylus/device_preset.h"
 
 namespace trocar::server {

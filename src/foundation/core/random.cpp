@@ -1,8 +1,5 @@
 #include "core/random.h"
 
-#include <fmt/format.h>
-#include <xxhash.h>
-
 #include <cmath>
 #include <numbers>
 
@@ -12,26 +9,6 @@ inline namespace core {
 double Random::normal() noexcept {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
   return radius * std::cos(2.0 * std::numbers::pi * uniform());
-}
-
-}  // namespace core
-inline namespace core {
-
-ContentHash::ContentHash() : state_(XXH3_createState()) {
-  XXH3_128bits_reset(static_cast<XXH3_state_t*>(state_));
-}
-
-ContentHash::~ContentHash() {
-  XXH3_freeState(static_cast<XXH3_state_t*>(state_));
-}
-
-void ContentHash::add(std::span<const std::byte> bytes) {
-  XXH3_128bits_update(static_cast<XXH3_state_t*>(state_), bytes.data(), bytes.size());
-}
-
-std::string ContentHash::digest() const {
-  const XXH128_hash_t hash = XXH3_128bits_digest(static_cast<const XXH3_state_t*>(state_));
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
 }  // namespace core

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/random.h"
+#include "core/content_hash.h"
 #include "volume/sampling.h"
 
 namespace trocar::anatomy {

@@ -10,7 +10,7 @@
 
 #include "config/toml.h"
 #include "config/toml_writer.h"
-#include "core/random.h"
+#include "core/content_hash.h"
 
 namespace trocar::motion {
 namespace {

@@ -10,8 +10,8 @@
 #include "patient_builder/derive/derive_structures.h"
 #include "phantom/biopsy.h"
 #include "phantom/cases.h"
-#include "phantom/layer_scene.h"
-#include "phantom/layers.h"
+#include "phantom/layered/layer_scene.h"
+#include "phantom/layered/layers.h"
 #include "phantom/render.h"
 #include "phantom/torso_patient.h"
 

@@ -11,7 +11,7 @@
 #include "signing/token.h"
 #include "web/api/route.h"
 #include "web/repository_pool.h"
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 #include "web/static_files.h"
 #include "web/transport/http_server.h"
 

@@ -10,7 +10,7 @@
 #include "database/database_url.h"
 #include "signing/password.h"
 #include "web/message.h"
-#include "web/security/login_throttle.h"
+#include "web/security/rate_limits.h"
 
 namespace trocar::web {
 

@@ -69,7 +69,7 @@ struct SessionParameters {
   /// Differences from the previous parameters. For the first parameters: the user's settings of the tissue table:
   /// "skin.fp=6".
   std::vector<std::string> settings;
-  std::vector<std::string> options;  ///< All options: force model, coupling …; see haptics/scene_options.h.
+  std::vector<std::string> options;  ///< All options: force model, coupling …; see haptics/option_texts.h.
   std::string tissue_table_toml;     ///< The whole table.
 };
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/log.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 #include "realtime/periodic_loop.h"
 #include "server/detail/shared.h"
 #include "server/flight_recorder.h"

@@ -17,7 +17,7 @@
 #include "core/text.h"
 #include "core/version.h"
 #include "dicom/volumes/write_volumes.h"
-#include "io/dicom/dicom_folder.h"
+#include "io/ct_series/dicom_folder.h"
 #include "io/image/image_file.h"
 #include "io/patient/label_sources.h"
 #include "patient_builder/build_patient.h"

@@ -9,7 +9,7 @@
 #include "core/files/folders.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "io/dicom/dicom_folder.h"
+#include "io/ct_series/dicom_folder.h"
 #include "io/image/detail/payload.h"
 #include "io/image/detail/read_grid.h"
 #include "io/patient/detail/label_checks.h"

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <span>
 
+#include "core/content_hash.h"
 #include "core/files/folders.h"
 #include "core/files/input_file.h"
 #include "core/files/unfinished_output.h"
 #include "core/log.h"
-#include "core/random.h"
 #include "io/patient/detail/maker_version.h"
 #include "io/patient/patient_folder.h"
 #include "phantom/phantom.h"

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "core/random.h"
+#include "core/content_hash.h"
 
 namespace trocar {
 inline namespace core {

@@ -1,4 +1,4 @@
-#include "phantom/layers.h"
+#include "phantom/layered/layers.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "anatomy/tissue/hounsfield.h"
 #include "core/files/folders.h"
 #include "patient_builder/build_patient.h"
-#include "phantom/layer_scene.h"
+#include "phantom/layered/layer_scene.h"
 #include "volume/sampling.h"
 
 namespace trocar::phantom {

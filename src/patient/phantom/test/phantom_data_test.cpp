@@ -8,7 +8,7 @@
 #include "anatomy/known_structures.h"
 #include "core/testing/changed_file.h"
 #include "core/testing/data_folder.h"
-#include "phantom/layer_scene.h"
+#include "phantom/layered/layer_scene.h"
 #include "phantom/phantom.h"
 
 namespace trocar::phantom {

@@ -6,7 +6,7 @@
 
 #include "raw_client.h"
 #include "service_lab.h"
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 #include "web/transport/detail/httplib_include.h"
 #include "web/transport/http_server.h"
 

@@ -1,8 +1,8 @@
 // Each guard alone, without sockets, clocks or a database.
 #include <gtest/gtest.h>
 
-#include "web/security/login_throttle.h"
-#include "web/security/request_origin.h"
+#include "web/security/rate_limits.h"
+#include "web/security/request_guards.h"
 
 namespace trocar::web {
 namespace {

@@ -14,7 +14,7 @@
 #include "core/files/unfinished_output.h"
 #include "core/interruption.h"
 #include "core/log.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 #include "haptics/tick.h"
 #include "stylus/device_preset.h"
 #include "stylus/virtual_stylus.h"

@@ -11,7 +11,7 @@ namespace trocar::attempt {
 
 /// The parameters of a scene.
 struct SceneParameters {
-  std::vector<std::string> options;  ///< See haptics/scene_options.h.
+  std::vector<std::string> options;  ///< See haptics/option_texts.h.
   std::string tissue_table_toml;
 };
 

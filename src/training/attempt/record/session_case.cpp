@@ -9,7 +9,7 @@
 #include "core/files/folders.h"
 #include "core/result.h"
 #include "haptics/force_version.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 #include "tasks/assess_path.h"
 #include "tasks/fit_to_patient.h"
 #include "tasks/needle.h"

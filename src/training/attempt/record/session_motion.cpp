@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 
 namespace trocar::attempt {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/random.h"
+#include "core/content_hash.h"
 #include "storage/detail/database.h"
 #include "telemetry/tick_sample.h"
 

@@ -50,6 +50,9 @@ constexpr std::array<ConditionRow, static_cast<std::size_t>(kLastCondition) + 1>
     {"moved_mm", Argument::kNumber, {1.0, 100.0}, "move the needle"},
 }};
 
+static_assert(std::ranges::all_of(kRows, [](const ConditionRow& row) { return row.key != nullptr; }),
+              "each ConditionKind has a row, in their order");
+
 const ConditionRow& row_of(ConditionKind kind) noexcept {
   return kRows[static_cast<std::size_t>(kind)];
 }

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "core/result.h"
-#include "io/dicom/detail/dicom_series.h"
+#include "io/ct_series/detail/dicom_series.h"
 #include "io/image/detail/raw_volume.h"
 #include "io/image/detail/volume_file.h"
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "core/parallel.h"
-#include "io/dicom/detail/dicom_slice.h"
-#include "io/dicom/dicom_folder.h"
+#include "io/ct_series/detail/dicom_slice.h"
+#include "io/ct_series/dicom_folder.h"
 #include "io/image/detail/payload.h"
 #include "io/patient/label_map.h"
 

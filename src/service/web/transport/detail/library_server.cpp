@@ -4,7 +4,7 @@
 #include <sys/socket.h>
 
 #include "core/log.h"
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 #include "web/transport/detail/connection.h"
 
 namespace trocar::web::detail {

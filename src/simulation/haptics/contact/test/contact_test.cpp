@@ -10,7 +10,7 @@
 #include "core/random.h"
 #include "core/testing/allocation_guard.h"
 #include "haptics/contact/test/flat_skin.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 #include "haptics/test/tick_period.h"
 #include "haptics/tick.h"
 #include "lab/haptics/closed_loop.h"

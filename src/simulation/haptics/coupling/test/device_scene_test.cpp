@@ -5,7 +5,7 @@
 
 #include "anatomy/tissue/tissue_table.h"
 #include "core/files/folders.h"
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 #include "haptics/test/layered_patient.h"
 #include "stylus/device_preset.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/result.h"
-#include "io/dicom/detail/dicom_slice.h"
-#include "io/dicom/dicom_folder.h"
+#include "io/ct_series/detail/dicom_slice.h"
+#include "io/ct_series/dicom_folder.h"
 #include "io/image/detail/raw_volume.h"
 
 namespace trocar::io::detail {

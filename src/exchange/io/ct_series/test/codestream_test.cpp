@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "io/dicom/detail/jpeg_segments.h"
+#include "io/ct_series/detail/jpeg_segments.h"
 
 namespace trocar::testing {
 namespace {

@@ -1,4 +1,4 @@
-#include "phantom/layer_scene.h"
+#include "phantom/layered/layer_scene.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "web/message.h"
-#include "web/security/login_throttle.h"
+#include "web/security/rate_limits.h"
 
 namespace trocar::web {
 

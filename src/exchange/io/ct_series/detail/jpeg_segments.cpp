@@ -1,4 +1,4 @@
-#include "io/dicom/detail/jpeg_segments.h"
+#include "io/ct_series/detail/jpeg_segments.h"
 
 #include <cstddef>
 #include <cstdint>

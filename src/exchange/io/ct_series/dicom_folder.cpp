@@ -1,4 +1,4 @@
-#include "io/dicom/dicom_folder.h"
+#include "io/ct_series/dicom_folder.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "phantom/layers.h"
+#include "phantom/layered/layers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "phantom/cases.h"
-#include "phantom/layer_scene.h"
+#include "phantom/layered/layer_scene.h"
 #include "phantom/render.h"
 #include "phantom/structure.h"
 

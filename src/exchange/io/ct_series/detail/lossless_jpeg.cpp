@@ -1,4 +1,4 @@
-#include "io/dicom/detail/lossless_jpeg.h"
+#include "io/ct_series/detail/lossless_jpeg.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "io/dicom/detail/jpeg_segments.h"
+#include "io/ct_series/detail/jpeg_segments.h"
 
 namespace trocar::io::detail {
 namespace {

@@ -1,5 +1,5 @@
 // Stored numbers come back with their sign, and without what lies in unused bits, from every transfer syntax.
-#include "io/dicom/detail/pixel_unpacking.h"
+#include "io/ct_series/detail/pixel_unpacking.h"
 
 #include <gdcmImage.h>
 #include <gdcmImageChangeTransferSyntax.h>

@@ -1,4 +1,4 @@
-#include "web/security/login_throttle.h"
+#include "web/security/rate_limits.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/result.h"
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 
 namespace trocar::web {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptics/scene_options.h"
+#include "haptics/option_texts.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "io/dicom/detail/dicom_slice.h"
+#include "io/ct_series/detail/dicom_slice.h"
 
 #include <fmt/format.h>
 #include <gdcmTrace.h>
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/dicom/detail/pixel_unpacking.h"
+#include "io/ct_series/detail/pixel_unpacking.h"
 
 namespace trocar::io::detail {
 

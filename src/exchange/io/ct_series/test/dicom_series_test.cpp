@@ -1,4 +1,4 @@
-#include "io/dicom/detail/dicom_series.h"
+#include "io/ct_series/detail/dicom_series.h"
 
 #include <cmath>
 #include <numeric>

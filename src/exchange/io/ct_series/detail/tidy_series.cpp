@@ -1,4 +1,4 @@
-#include "io/dicom/detail/tidy_series.h"
+#include "io/ct_series/detail/tidy_series.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

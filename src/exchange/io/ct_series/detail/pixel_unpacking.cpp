@@ -1,4 +1,4 @@
-#include "io/dicom/detail/pixel_unpacking.h"
+#include "io/ct_series/detail/pixel_unpacking.h"
 
 #include <gdcmFragment.h>
 #include <gdcmImage.h>
@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "core/text.h"
-#include "io/dicom/detail/jpeg_segments.h"
-#include "io/dicom/detail/lossless_jpeg.h"
+#include "io/ct_series/detail/jpeg_segments.h"
+#include "io/ct_series/detail/lossless_jpeg.h"
 #include "io/image/detail/itk_image.h"
 
 namespace trocar::io::detail {

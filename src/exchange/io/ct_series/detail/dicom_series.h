@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 #include "dicom/stack/slice_stack.h"
-#include "io/dicom/detail/dicom_slice.h"
+#include "io/ct_series/detail/dicom_slice.h"
 #include "io/image/detail/raw_volume.h"
 #include "volume/grid.h"
 

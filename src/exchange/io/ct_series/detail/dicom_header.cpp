@@ -1,4 +1,4 @@
-#include "io/dicom/detail/dicom_header.h"
+#include "io/ct_series/detail/dicom_header.h"
 
 #include <algorithm>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "io/dicom/detail/dicom_series.h"
+#include "io/ct_series/detail/dicom_series.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 
 #include "core/available_memory.h"
 #include "core/parallel.h"
-#include "io/dicom/detail/tidy_series.h"
-#include "io/dicom/dicom_folder.h"
+#include "io/ct_series/detail/tidy_series.h"
+#include "io/ct_series/dicom_folder.h"
 
 namespace trocar::io::detail {
 namespace fs = std::filesystem;

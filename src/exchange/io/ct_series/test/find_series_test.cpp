@@ -1,5 +1,5 @@
 #include "dicom/testing/dicom_writer.h"
-#include "io/dicom/dicom_folder.h"
+#include "io/ct_series/dicom_folder.h"
 #include "io/image/image_file.h"
 #include "io/test/test_support.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "io/dicom/detail/dicom_slice.h"
+#include "io/ct_series/detail/dicom_slice.h"
 
 namespace trocar::io {
 

@@ -10,7 +10,7 @@
 #include "core/result.h"
 #include "dicom/segmentation/segmentation.h"
 #include "geometry/vec.h"
-#include "io/dicom/detail/dicom_header.h"
+#include "io/ct_series/detail/dicom_header.h"
 #include "io/image/detail/raw_volume.h"
 
 namespace trocar::io::detail {

@@ -1,5 +1,5 @@
 // Lossless JPEG of all predictors, packed here and unpacked by our code and by GDCM; and damaged streams.
-#include "io/dicom/detail/lossless_jpeg.h"
+#include "io/ct_series/detail/lossless_jpeg.h"
 
 #include <gdcmImage.h>
 #include <gdcmSequenceOfFragments.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/dicom/detail/jpeg_segments.h"
+#include "io/ct_series/detail/jpeg_segments.h"
 
 namespace trocar::io::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "web/security/request_origin.h"
+#include "web/security/request_guards.h"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
