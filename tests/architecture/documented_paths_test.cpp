@@ -44,11 +44,9 @@ class KnownPaths {
 
  private:
   void add(std::string path) {
-    for (std::size_t slash = 0; slash != std::string::npos; path.erase(0, slash + 1)) {
-      ends_.insert(path);
-      slash = path.find('/');
-      if (slash == std::string::npos) break;
-    }
+    ends_.insert(path);
+    for (std::size_t slash = 0; (slash = path.find('/')) != std::string::npos; ends_.insert(path))
+      path.erase(0, slash + 1);
   }
 
   std::set<std::string> ends_;
@@ -57,10 +55,14 @@ class KnownPaths {
 
 /// Names between backquotes that can only be a source or a folder of ours; decisions of the past may name former ones.
 std::vector<std::string> named_paths(std::string text) {
-  static const std::regex kBlock("```[^`]*```"), kQuoted("`([^`\n]+)`");
+  static const std::regex kQuoted("`([^`\n]+)`");
   static const std::regex kOwn(
       "[a-z0-9_./-]+/[a-z0-9_-]+\\.(h|cpp)|(src|apps|bench|lab|tests|scripts|cmake)/[a-z0-9_./-]+");
-  text = std::regex_replace(text, kBlock, "");
+  constexpr std::string_view kFence = "```";
+  for (std::size_t begin = 0; (begin = text.find(kFence, begin)) != std::string::npos;) {
+    const std::size_t end = text.find(kFence, begin + kFence.size());
+    text.erase(begin, end == std::string::npos ? end : end + kFence.size() - begin);
+  }
   std::vector<std::string> paths;
   for (std::sregex_iterator found(text.begin(), text.end(), kQuoted), end; found != end; ++found) {
     std::string path = (*found)[1];

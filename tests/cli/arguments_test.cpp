@@ -28,7 +28,7 @@ void expect_help(const std::string& command, int& count) {
 TEST(Help, OfEveryCommandHasAnExample) {
   int count = 0;
   expect_help("", count);
-  EXPECT_GT(count, 70);
+  EXPECT_GT(count, 60);
 }
 
 class Mistake : public ::testing::TestWithParam<const char*> {};

@@ -38,7 +38,7 @@ std::vector<Case> cases() {
       {kMeasure, poses + "1,0,1.0x,0,0,0,1,\n", "line 3: column tip_y_mm: '1.0x'"},
       {kMeasure, poses + "1,0,inf,0,0,0,1,\n", "line 3: column tip_y_mm: 'inf'"},
       {kMeasure, poses + "1,0,5,0,0,0,0,1,\n", "line 3: 9 fields, the header has 8"},
-      {kMeasure, poses + "1,0,0,0,0,0,1,\"puncture:skin\n", "line 3: field 8: a quotation does not end"},
+      {kMeasure, poses + "1,0,0,0,0,0,1,\"puncture:skin\n", "line 3, field 8"},
       {kMeasure, poses.substr(7), "line 1: missing column time_s"},
       {kMeasure, "", "empty"},
       {kReplay, motion + "0.001,0,0,0,1.0x,0,0,0\n", "line 3: column qw: '1.0x'"},

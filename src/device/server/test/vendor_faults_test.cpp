@@ -144,7 +144,7 @@ void run_trial(const VendorFault& expected, Trial& trial) {
 TEST_P(VendorFaults, EndAtZeroForceWithoutRuleViolations) {
   const VendorFault& expected = GetParam();
   Trial trial;
-  for (int attempt = 0; attempt < 3 && trial.broken_s == 0.0; ++attempt) {
+  for (int attempt = 0; attempt < 10 && trial.broken_s == 0.0; ++attempt) {
     trial = {};
     ASSERT_NO_FATAL_FAILURE(run_trial(expected, trial));
   }
