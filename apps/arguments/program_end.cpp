@@ -8,6 +8,9 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
+
+#include "core/text.h"
 
 namespace trocar::arguments {
 namespace {
@@ -25,10 +28,21 @@ int end_output(int status) {
   return status == 0 ? failed : status;
 }
 
+/// A part of an error may quote a file, of any length and with any bytes.
+std::string short_text(const std::string& text) {
+  constexpr std::size_t kMostBytes = 1500;
+  if (text.size() <= kMostBytes) return valid_utf8(text);
+  std::size_t end = kMostBytes;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;  // not within a character
+  return valid_utf8(text.substr(0, end)) + "…";
+}
+
 }  // namespace
 
 int report_error(const Error& error) {
-  fmt::print(stderr, "error: {}\n", error.text());
+  Error shown = error;
+  for (std::string* part : {&shown.what, &shown.where, &shown.advice}) *part = short_text(*part);
+  fmt::print(stderr, "error: {}\n", shown.text());
   return error.exit_status;
 }
 

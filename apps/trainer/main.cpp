@@ -89,6 +89,9 @@ Result<TrainerChoice> with_arguments(TrainerChoice choice, const Arguments& argu
   if (!arguments.patient) return choice;
   std::error_code error;
   if (fs::is_directory(*arguments.patient, error)) {
+    if (!fs::is_regular_file(fs::path(*arguments.patient) / "patient.toml", error))
+      return fail_usage("not a patient folder: it has no patient.toml", *arguments.patient,
+                        "name the folder that trocar patient build or generate wrote");
     choice.patient = fs::absolute(*arguments.patient).string();
   } else if (const auto embedded = phantom::find_embedded_patient(*arguments.patient)) {
     choice.patient = *arguments.patient;

@@ -374,6 +374,9 @@ TEST_F(WindowTest, TheNamedPatientBringsItsTask) {
   const Played refused = run({task, QStringLiteral("lumbar-puncture"), patient, QStringLiteral("biopsy-1")});
   EXPECT_EQ(refused.exit_status, 2);
   EXPECT_TRUE(refused.output.contains(QStringLiteral("not for this task"))) << refused.output.toStdString();
+  const Played no_patient = run({patient, folder.path()});
+  EXPECT_EQ(no_patient.exit_status, 2);
+  EXPECT_TRUE(no_patient.output.contains(QStringLiteral("no patient.toml"))) << no_patient.output.toStdString();
 }
 
 TEST_F(WindowTest, BenchmarkDoesNotChangeSettings) {

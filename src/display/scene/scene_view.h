@@ -57,7 +57,7 @@ struct SceneView {
   std::optional<Segment> goal_P;       ///< Needle at the hand's pose, translucent.
   std::optional<Segment> stylet_P;     ///< Of a biopsy gun, ahead of its cannula.
   std::optional<Segment> core_P;       ///< Place of the last core.
-  std::optional<Segment> throw_P;      ///< Way of a gun's stylet if it were fired now; dashed.
+  std::optional<Segment> throw_P;      ///< Path of a gun's stylet if it were fired now; dashed.
   std::optional<Segment> notch_P;      ///< The part of it where the notch stops.
   std::optional<Fingertip> finger;     ///< Palpating.
   std::span<const Vec3> skin_marks_P;  ///< Dots of a skin marker.

@@ -37,7 +37,7 @@ class AttemptTrack {
   struct End {
     Moment moment;
     std::optional<Entry> entry;  ///< The last one before.
-    /// Inward way of the tip inside the body, with repeated pushes after a pull back; motion to and fro of less than 1
+    /// Inward path of the tip inside the body, with repeated pushes after a pull back; motion to and fro of less than 1
     /// mm is tremor and not counted.
     double travel_mm = 0.0;
     double deepest_mm = 0.0;  ///< Largest depth until then.

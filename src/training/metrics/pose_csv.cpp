@@ -59,6 +59,7 @@ struct PoseLayout {
   std::optional<PoseColumns<3>> probe, rest_tip, rest_axis;
   std::optional<PoseColumns<4>> probe_turn;
   std::optional<PoseColumns<kForces.size()>> forces;
+  std::optional<PoseColumn> pressed;  ///< Of a layer that has not given way.
   std::optional<std::size_t> phase, event;
 };
 
@@ -160,6 +161,7 @@ Result<PoseLayout> find_layout(const Header& header, const std::string& where) {
   if (!layout.force && header.find("f_prepuncture_n")) {
     TROCAR_TRY(layout.forces, header.find_group(kForces, false));
   }
+  layout.pressed = header.find_number("layer_displacement_mm");
   layout.phase = header.find("phase");
   layout.event = header.find("event");
   return layout;
@@ -237,6 +239,17 @@ std::optional<double> read_resistance(RowReader& reader, const PoseLayout& layou
   return std::isfinite(resistance_n) ? std::optional(resistance_n) : std::nullopt;
 }
 
+/// As moment_of(TickSample).
+double read_pressed_mm(RowReader& reader, const PoseLayout& layout, const Moment& moment) {
+  telemetry::TickSample sample;
+  sample.layer_displacement_mm = reader.number(layout.pressed).value_or(0.0);
+  if (!layout.pressed || !moment.phase) return 0.0;
+  sample.phase = *moment.phase;
+  sample.rest_tip_mm = moment.tip_A();
+  sample.rest_axis = moment.axis_A().normalized();
+  return (sample.rest_tip_mm - telemetry::pierced_rest_tip_mm(sample)).norm();
+}
+
 }  // namespace
 
 struct PoseTable::Impl {
@@ -291,6 +304,8 @@ struct PoseTable::Impl {
     moment.contact_n = reader.number(layout.contact);
     if (layout.phase) read_phase(reader, reader.text(*layout.phase), moment);
     if (layout.event) read_events(reader, reader.text(*layout.event), names, moment);
+    if (names.empty()) moment.events.reset();  // no row has a puncture: the recording does not know them
+    moment.pressed_mm = read_pressed_mm(reader, layout, moment);
     return moment;
   }
 

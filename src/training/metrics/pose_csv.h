@@ -14,8 +14,9 @@ namespace trocar::metrics {
 /// A table of poses of any system, as CSV (docs/metrics.md). Frame P (LPS). The first line names the columns, in any
 /// order; others are ignored:
 /// - time_s; tip_x_mm, tip_y_mm, tip_z_mm (or _m: metres); axis_x, axis_y, axis_z (hub to tip): required.
-/// - depth_mm or depth_m, force_n, phase, event ("puncture:skin"): as in `trocar session export`, whose files can be
-///   read, too; there the resistance follows from the columns of the forces.
+/// - depth_mm or depth_m, force_n, phase, event ("puncture:skin"), layer_displacement_mm: as in `trocar session
+///   export`, whose files can be read, too; there the resistance follows from the columns of the forces. Events of a
+///   table without any puncture are not known.
 /// - probe_x_mm, probe_y_mm, probe_z_mm (or _m), probe_qw, probe_qx, probe_qy, probe_qz: X_PT; probe_contact_n.
 /// An empty field, and "nan", is no value; every row has a time. Time may not run backwards; interruptions are events
 /// "interruption:SECONDS".

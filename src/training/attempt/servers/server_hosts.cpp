@@ -66,7 +66,8 @@ Status LocalServer::check() {
   if (auto told = error_of_line(last)) return tl::unexpected(*std::move(told));
   return fail(fmt::format("the server of the {} {}", options_.tool,
                           process_ ? process_->how_it_ended() : "could not be started again"),
-              "trocar-hapticd", last);
+              last.empty() ? "trocar-hapticd" : "trocar-hapticd, which said last: " + last,
+              "start the attempt again; what was recorded is kept");
 }
 
 namespace {

@@ -74,12 +74,19 @@ class SmoothPath {
     double inside = 0.0;    ///< Share of the way about it that lies in the body, 0..1.
   };
 
-  /// Calls visit(from, to) for each new piece of the way. Pieces do not lead over a pause or a gap.
+  /// Calls visit(from, to) for each new piece of the way. A gap of the recording is one straight piece; none leads over
+  /// a pause.
   template <class Visit>
   void add(const Step& step, Visit&& visit) {
     const bool is_joined = step.before != nullptr && step.dt_s <= UniformSampler::kLongestGap_s;
     if (!is_joined) {
       finish(visit);
+      Point next = point_of(step.now);
+      if (step.before != nullptr) {
+        const Point before = point_of(*step.before);
+        next.inside = share_inside(before.depth_mm, next.depth_mm, (next.tip_P - before.tip_P).norm());
+        visit(before, next);
+      }
       last_ = point_of(step.now);
     }
     now_ = point_of(step.now);

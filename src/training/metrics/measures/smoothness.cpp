@@ -104,7 +104,7 @@ class Smoothness : public Metric {
     last_squared_ = 0.0;
   }
   std::string reason_without_value() const {
-    if (!(weight_ > 0.0)) return "the recording is shorter than 0.16 s";
+    if (!(weight_ > 0.0)) return "no 0.16 s are recorded without a gap of more than 1 s";
     if (static_cast<double>(steps_) < kLeastRate_hz * stepped_s_) return "fewer than 24 moments a second";
     if (!(peak_mm_s_ > kLeastSpeed_mm_s)) return "the needle did not move";
     return {};

@@ -61,6 +61,25 @@ TEST(MotionMetrics, IgnoresRecordingNoiseInPathLength) {
   }
 }
 
+TEST(MotionMetrics, CountsGapsOfTheRecordingAsStraightLines) {
+  Recording slow;  // a row every 2 s
+  for (int n = 0; n < 100; ++n) {
+    Moment& moment = slow.emplace_back();
+    moment.time_s = 2.0 * n;
+    moment.tip_P = {static_cast<double>(n), 0.0, 0.0};
+    moment.axis_P = Vec3::UnitX();
+    moment.depth_mm = n < 50 ? 0.0 : n - 49.0;
+  }
+  EXPECT_NEAR(measure_one("path_length", slow), 99.0, 1e-9);
+  EXPECT_NEAR(measure_one("path_in_tissue", slow), 50.0, 0.501) << "half of the row at the skin";
+  Recording gap = record(2.0, 100.0, [](double t, Moment& m) { m.tip_P = {10.0 * t, 0.0, 0.0}; });
+  Moment after = gap.back();
+  after.time_s += 4.0;
+  after.tip_P.x() += 40.0;
+  gap.push_back(after);
+  EXPECT_NEAR(measure_one("path_length", gap), measure_one("path_length_raw", gap), 1e-6);
+}
+
 TEST(MotionMetrics, CircleHasItsCircumference) {
   const Recording recording = record(2.0, 1000.0, [](double t, Moment& m) {
     m.tip_P = {30.0 * std::cos(pi * t), 30.0 * std::sin(pi * t), 0.0};

@@ -78,6 +78,22 @@ TEST_F(PoseCsv, ReadsTransducerForceDepthPhaseAndEvents) {
   EXPECT_EQ((*all[1].events)[0].id, 1);
 }
 
+TEST_F(PoseCsv, KnowsHowFarALoadedTipPressesIn) {
+  const std::string header = "time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,phase,layer_displacement_mm\n";
+  const auto all = moments(header + "0,0,0,9,0,0,1,loading,2\n1,0,0,9,0,0,1,inserted,2\n2,0,0,9,0,0,1,loading,\n");
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_GT(all[0].pressed_mm, 2.0);
+  EXPECT_LT(all[0].pressed_mm, 2.2);
+  EXPECT_EQ(all[1].pressed_mm, 0.0) << "it has given way";
+  EXPECT_EQ(all[2].pressed_mm, 0.0);
+}
+
+TEST_F(PoseCsv, ATableWithoutAnyPunctureKnowsNoEvents) {
+  const std::string header = "time_s,tip_x_mm,tip_y_mm,tip_z_mm,axis_x,axis_y,axis_z,event\n";
+  EXPECT_FALSE(moments(header + "0,0,0,9,0,0,1,\n1,0,0,9,0,0,1,enter:liver\n")[1].events);
+  EXPECT_TRUE(moments(header + "0,0,0,9,0,0,1,\n1,0,0,9,0,0,1,puncture:skin\n")[0].events);
+}
+
 TEST_F(PoseCsv, NamesLineAndColumnOfAnError) {
   const std::string header = kHeader;
   EXPECT_EQ(refused(""), "the file is empty");
