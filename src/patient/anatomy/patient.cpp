@@ -57,8 +57,8 @@ std::string hash_patient(const VirtualPatient& patient) {
   return hash.digest();
 }
 
-const Label* find_label(const VirtualPatient& patient, const Vec3& p_P) noexcept {
-  const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient.labels, p_P, 0);
+const Label* find_label(const VirtualPatient& patient, const Vec3& p_A) noexcept {
+  const std::uint8_t id = volume::sample_nearest<std::uint8_t>(patient.labels, p_A, 0);
   return id == 0 ? nullptr : patient.label_table.find(id);
 }
 

@@ -101,6 +101,6 @@ inline std::string motion_hash(const VirtualPatient& patient) {
 }
 
 /// Label at a point of A; nullptr where nothing is labelled or outside the volume.
-const Label* find_label(const VirtualPatient& patient, const Vec3& p_P) noexcept;
+const Label* find_label(const VirtualPatient& patient, const Vec3& p_A) noexcept;
 
 }  // namespace trocar::anatomy
