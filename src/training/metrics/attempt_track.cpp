@@ -24,8 +24,8 @@ bool is_inside(const Moment& moment) noexcept {
 
 Vec3 AttemptTrack::skin_crossing_A(const Entry& entry) const noexcept {
   const Vec3 tip_A = entry.moment.tip_A(), axis_A = entry.moment.axis_A();
-  if (facts_.patient == nullptr) return tip_A - entry.moment.depth_mm.value_or(0.0) * axis_A;
-  if (facts_.patient->skin_distance_mm.empty()) return tip_A;
+  const Vec3 by_depth_A = tip_A - entry.moment.depth_mm.value_or(0.0) * axis_A;
+  if (facts_.patient == nullptr || facts_.patient->skin_distance_mm.empty()) return by_depth_A;
   const auto outside_mm = [&](double back_mm) {
     return volume::sample_linear(facts_.patient->skin_distance_mm, tip_A - back_mm * axis_A);
   };
@@ -39,7 +39,7 @@ Vec3 AttemptTrack::skin_crossing_A(const Entry& entry) const noexcept {
     }
     before_mm = now_mm;
   }
-  return tip_A;
+  return by_depth_A;  // a recording with few moments, whose first one inside is deep
 }
 
 void AttemptTrack::note_entry(const Moment& now) {
@@ -48,17 +48,21 @@ void AttemptTrack::note_entry(const Moment& now) {
       facts_.skin_layer && now.events && std::ranges::any_of(*now.events, [&](const telemetry::TickEvent& event) {
         return event.kind == telemetry::EventKind::kPuncture && event.id == *facts_.skin_layer;
       });
+  const bool is_outside = now.phase ? *now.phase == telemetry::InsertionPhase::kOutside : !is_inside(now);
   if (has_punctured) punctured_ = next(punctured_);
+  has_left_ = !has_punctured && (has_left_ || is_outside);
+  if (has_punctured) is_newest_by_depth_ = false;
   if (!is_inside(now)) {
     is_sunk_ = false;
   } else if (!is_sunk_ && now.phase != telemetry::InsertionPhase::kLoading) {
     is_sunk_ = true;
     sunk_ = next(sunk_);
+    is_newest_by_depth_ = has_left_;
   }
 }
 
 void AttemptTrack::take(const Moment& now) {
-  end_ = End{now, punctured_ ? punctured_ : sunk_, strokes_.travel_mm(), deepest_mm_};
+  end_ = End{now, punctured_ && !is_newest_by_depth_ ? punctured_ : sunk_, strokes_.travel_mm(), deepest_mm_};
 }
 
 void AttemptTrack::step(const Moment& now) {

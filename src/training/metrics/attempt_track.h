@@ -28,7 +28,7 @@ class AttemptTrack {
     std::optional<double> end_s;        ///< Time of the end (scoring/attempt_end.h); empty: the deepest moment.
     std::vector<Vec3> target_points_P;  ///< The nearest moment is the end if no depth is recorded.
   };
-  /// An entry through the skin: at its puncture; in a recording without one where the depth becomes positive.
+  /// An entry through the skin: at its puncture; without the event of it where the depth becomes positive.
   struct Entry {
     Moment moment;
     int count = 1;  ///< Entries up to this one.
@@ -61,6 +61,8 @@ class AttemptTrack {
   std::optional<double> contact_s_;
   std::optional<Entry> punctured_, sunk_;  ///< The newest entry by an event, and by depth.
   bool is_sunk_ = false;
+  bool has_left_ = false;            ///< It was outside since the last puncture.
+  bool is_newest_by_depth_ = false;  ///< It entered again, and the event of it was not recorded.
   detail::Strokes strokes_{detail::kTremor_mm, true};
   double deepest_mm_ = 0.0;
   std::optional<End> end_;

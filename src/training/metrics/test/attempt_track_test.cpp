@@ -69,6 +69,28 @@ TEST(AttemptTrack, UsesDepthForEntryWithoutPunctureEvents) {
   EXPECT_LT(metrics.entry_offset_P.norm(), 1e-3);
 }
 
+TEST(AttemptTrack, FindsTheEntryOfARecordingWithFewMoments) {
+  const anatomy::VirtualPatient patient = make_box_patient();
+  AttemptTrack track({&patient, std::uint8_t{0}, {}, {}});
+  const auto step = [&](double time_s, const Vec3& tip_P, double depth_mm, bool has_event) {
+    Moment moment;
+    moment.time_s = time_s;
+    moment.tip_P = tip_P;
+    moment.axis_P = Vec3::UnitY();
+    moment.depth_mm = depth_mm;
+    moment.events = telemetry::TickEvents{};
+    if (has_event) (*moment.events)[0] = {telemetry::EventKind::kPuncture, 0};
+    track.step(moment);
+  };
+  step(0.0, {20.0, -5.0, 50.0}, 0.0, false);
+  step(1.0, {20.0, 10.0, 50.0}, 10.0, true);
+  step(2.0, {60.0, -5.0, 50.0}, 0.0, false);
+  step(3.0, {60.0, 50.0, 50.0}, 50.0, false);  // deeper than the skin is searched, and its event was lost
+  ASSERT_TRUE(track.end() && track.end()->entry);
+  EXPECT_EQ(track.end()->entry->moment.time_s, 3.0);
+  EXPECT_LT((track.skin_crossing_A(*track.end()->entry) - Vec3(60.0, 0.0, 50.0)).norm(), 1e-9);
+}
+
 TEST(AttemptTrack, DistinguishesUntouchedFromUnpiercedSkin) {
   EXPECT_FALSE(measure_in_box({}, {}).has_touched_skin);
   const std::vector<telemetry::TickSample> whole = make_attempt(make_box_plan().line_P).samples;
