@@ -13,6 +13,7 @@ void add_patient_commands(Command& program, Action& action);
 void add_patient_report_commands(Command& patient, Action& action);   ///< Adds show, check and render to `patient`.
 void add_patient_fetch_command(Command& patient, Action& action);     ///< Adds fetch to `patient`.
 void add_patient_export_command(Command& patient, Action& action);    ///< Adds export to `patient`.
+void add_patient_motion_command(Command& patient, Action& action);    ///< Adds motion to `patient`.
 void add_patient_variants_command(Command& patient, Action& action);  ///< Adds variants to `patient`.
 void add_plan_command(Command& program, Action& action);
 void add_register_command(Command& program, Action& action);

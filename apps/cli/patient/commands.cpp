@@ -21,6 +21,7 @@
 #include "io/patient/build_from_files.h"
 #include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
+#include "motion_builder/breathing_model.h"
 #include "patient_builder/plausibility/judge_anatomy.h"
 #include "phantom/phantom.h"
 #include "png/png_file.h"
@@ -97,8 +98,10 @@ Status generate_patient(const std::string& name, std::uint64_t seed, double voxe
   TROCAR_TRY_STATUS(check_new(out));
   const ProgressPrinter printer;
   const Progress progress = printer.callback();
-  TROCAR_TRY(const anatomy::VirtualPatient patient,
-             phantom::generate_phantom(name, seed, {{0, 0, 0}, voxel_mm}, part_of(progress, 0.0, 0.5)));
+  TROCAR_TRY(anatomy::VirtualPatient patient,
+             phantom::generate_phantom(name, seed, {{0, 0, 0}, voxel_mm}, part_of(progress, 0.0, 0.4)));
+  io::round_as_saved(patient);
+  motion_builder::add_breathing_model(patient, part_of(progress, 0.4, 0.5));
   TROCAR_TRY(const auto meshes, save_with_surfaces(patient, out, part_of(progress, 0.5, 1.0)));
   draw_in_3d(patient, meshes, out);
   return {};
@@ -313,6 +316,7 @@ void add_patient_commands(Command& program, Action& action) {
 
   add_patient_fetch_command(patient, action);
   add_patient_export_command(patient, action);
+  add_patient_motion_command(patient, action);
   add_patient_variants_command(patient, action);
   add_thumbnail_command(patient, action);
   add_patient_report_commands(patient, action);

@@ -59,7 +59,7 @@ inline constexpr double kMostRefusalsPerS = 10.0;  ///< Refusals of invalid mess
 inline constexpr double kMostRefusalsAtOnce = 10.0;
 inline constexpr double kHelloPatience_s = 5.0;  ///< A connection without a valid Hello is closed after this time.
 
-inline constexpr std::uint32_t kLinkVersion = 6;  ///< Both sides must have the same version.
+inline constexpr std::uint32_t kLinkVersion = 7;  ///< Both sides must have the same version.
 
 // From a client.
 

@@ -31,7 +31,7 @@ inline constexpr std::size_t kColumnCount = 1;
 template <>
 inline constexpr std::size_t kColumnCount<Vec3> = 3;
 template <>
-inline constexpr std::size_t kColumnCount<Quaternion> = 4;
+inline constexpr std::size_t kColumnCount<Quaternion> = 4;  // and of Drivers, the same type
 
 /// One field of TickSample.
 template <class ValueType, TickUse tick_use = TickUse{}>
@@ -88,6 +88,9 @@ inline constexpr std::tuple kTickFields{
                     TickLimit::kPosition},
     TickField<Vec3>{
         &TickSample::rest_axis, "rest_axis", {"rest_axis_x", "rest_axis_y", "rest_axis_z"}, TickLimit::kAxis},
+    TickField<bool>{&TickSample::is_breath_held, "is_breath_held", {"breath_held"}},
+    TickField<Drivers, kSessionOnly>{
+        &TickSample::drivers, "drivers", {"driver_1", "driver_2", "driver_1_per_s", "driver_2_per_s"}},
     TickField<Quaternion, kSessionOnly>{&TickSample::device_rotation_wxyz,
                                         "device_rotation_wxyz",
                                         {"device_qw", "device_qx", "device_qy", "device_qz"}},

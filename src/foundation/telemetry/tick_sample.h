@@ -66,6 +66,7 @@ struct TickEvent {
 };
 using TickEvents = std::array<TickEvent, 4>;  ///< Events of one tick, filled from the front.
 using Quaternion = std::array<double, 4>;     ///< w, x, y, z.
+using Drivers = std::array<double, 4>;        ///< Values of two drivers, then their rates per s.
 
 /// The reason why the haptic server limited a force or rejected an input.
 enum class LimitReason : std::uint8_t {
@@ -126,6 +127,9 @@ struct TickSample {
   /// CT or a plan uses these.
   Vec3 rest_tip_mm = Vec3::Zero();
   Vec3 rest_axis = Vec3::UnitZ();
+  bool is_breath_held = false;  ///< The patient holds the breath.
+  /// Of the patient's motion (motion/breathing.h): what was, to the bit, for replays. Stored, not in the CSV.
+  Drivers drivers{};
   double coupling_share = 1.0;  ///< 0..1, share of the coupling that the loop's period permits (physics.md G11).
 };
 

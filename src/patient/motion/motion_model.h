@@ -8,88 +8,94 @@
 
 #include "core/result.h"
 #include "geometry/vec.h"
+#include "volume/grid.h"
 
 namespace trocar::motion {
 
-inline constexpr std::size_t kMostDrivers = 4;
-inline constexpr std::size_t kMostRegions = 8;
-inline constexpr std::size_t kMostModes = 16;
-/// Largest value of a driver, either sign; a larger one is clamped.
-inline constexpr double kMostDrive = 1.5;
-/// Largest displacement gradient of a region with all its drivers at kMostDrive. Below 1 the map of a region is
-/// one-to-one and its Jacobian is positive (Banach: x + u(x) with a contraction u).
-inline constexpr double kMostGradient = 0.8;
+inline constexpr std::size_t kMostDrivers = 2;
+inline constexpr std::size_t kMostRegions = 2;
+/// Range of a driver: 0 is end-expiration, 1 the deep breath that a model was made for. Others are clamped.
+inline constexpr double kLeastDrive = -0.3, kMostDrive = 1.5;
+/// Strongest shortening of a region that a model may make, with its drivers anywhere within their range: the symmetric
+/// part of the displacement gradient has no eigenvalue below -kMostShortening. Below 1 the map of a region is
+/// one-to-one and its Jacobian positive (the map x + u(x) is then strictly monotone).
+inline constexpr double kMostShortening = 0.85;
 
-/// How the displacement of a mode is distributed in its region.
-enum class Profile : std::uint8_t {
-  kUniform,  ///< The same everywhere.
-  kRamp,     ///< Zero at the centre, 1 at `extent_mm` along the axis from it, linear: a shear or a stretch.
-  kBump,     ///< exp(-r^2 / (2 extent^2)) around the centre.
-};
-
-/// A displacement that grows in proportion to one scalar, the driver. Lengths in mm, frame A.
-struct MotionMode {
-  static constexpr int kEveryRegion = -1;
-
-  int driver = 0;             ///< Index of a driver of the model.
-  int region = kEveryRegion;  ///< Index of a region of the model.
-  Profile profile = Profile::kUniform;
-  Vec3 displacement_mm = Vec3::Zero();  ///< Where the profile and the driver are 1. At most 100 mm long.
-  Vec3 centre_A = Vec3::Zero();
-  Vec3 axis_A = Vec3::UnitZ();  ///< Unit; of a ramp.
-  double extent_mm = 1.0;       ///< Range 1..1000.
-};
-
-/// The points with normal_A . p_A <= offset_mm.
-struct HalfSpace {
-  Vec3 normal_A = Vec3::UnitZ();  ///< Unit.
-  double offset_mm = 0.0;
-};
-
-/// A part of the body that moves as one; neighbouring regions slide along their border.
-struct MotionRegion {
-  std::string name;
-  std::vector<HalfSpace> sides;  ///< The region is what all of them share; none: everywhere.
-};
-
-/// What a model is made of. A point belongs to the first region that contains it; the last one has no sides.
+/// What a motion model is made of. Lengths in mm, frame A.
 struct MotionParts {
-  std::vector<std::string> drivers;
-  std::vector<MotionRegion> regions;
-  std::vector<MotionMode> modes;
+  using Scalars = std::array<double, kMostDrivers>;
+
+  std::vector<std::string> drivers;  ///< What moves the patient: "diaphragm", "chest". At least one.
+  std::vector<std::string> regions;  ///< One, or two that slide past each other: "wall", "inside".
+  /// Nodes of the displacement modes; axes along those of A.
+  volume::GridGeometry lattice;
+  /// modes[region * drivers.size() + driver]: displacement where the driver is 1, as coefficients of quadratic
+  /// B-splines, one a node, i fastest. Beyond the nodes the displacement of the edge continues.
+  std::vector<std::vector<Vec3f>> modes;
+  /// With two regions: how deep a point is in the second one (negative: in the first one), trilinear; about a distance:
+  /// no steeper than 1.5 mm per mm. Any axes.
+  volume::FloatGrid border_mm;
+  double liver_mm =
+      24.4;            ///< How far the liver moves down where the drivers are 1: the scale of breaths. Range 1..100.
+  Scalars at_ct{};     ///< Values of the drivers when the CT was taken; 0: at end-expiration.
+  std::string source;  ///< How the model was made, and what of it is assumed: one line. Not a part of the hash.
 };
 
-/// How the anatomy of a patient moves against its rest, the CT: frame A (at rest) to frame P (now). Immutable.
+/// How the anatomy of a patient moves against its rest, the CT: frame A (at rest) to frame P (now). Displacement modes
+/// of two regions that slide past each other, in proportion to a few drivers. Immutable.
 class MotionModel {
  public:
-  /// Errors: a number out of its range, a name that is missing, more parts than the limits above, a border without end
-  /// (the last region has sides), a displacement gradient above kMostGradient. `where` names the source.
+  /// Errors: too few or too many drivers or regions, a number that is not finite or above 150 mm, sizes that do not
+  /// fit, a shortening above kMostShortening at a node. `where` names the source.
   static Result<std::shared_ptr<const MotionModel>> make(MotionParts parts, const std::string& where);
+
+  /// The same without the last of these, for those who make models.
+  static Result<std::shared_ptr<const MotionModel>> unchecked(MotionParts parts, const std::string& where);
+  /// Strongest shortening at a node of the lattice, and half way to the next ones, with the drivers anywhere in their
+  /// range.
+  double shortening(int region, std::size_t node) const;
 
   const MotionParts& parts() const noexcept { return parts_; }
   const std::string& hash() const noexcept { return hash_; }  ///< Of the parts: the same model in two processes.
 
-  using Scalars = std::array<double, kMostDrivers>;
+  using Scalars = MotionParts::Scalars;
 
   /// Region of a point at rest. Real-time safe, like all that follows.
-  int region_of(const Vec3& p_A) const noexcept;
-  /// How far (mm) a point at rest is from belonging to a region; 0: it does.
-  double outside_mm(int region, const Vec3& p_A) const noexcept;
-  /// Displacement (mm) that a region's modes give a point at rest: the sum of driver * profile * displacement.
-  Vec3 displacement_mm(int region, const Vec3& p_A, const Scalars& drivers) const noexcept;
+  int region_of(const Vec3& p_A) const noexcept { return depth_mm(p_A) < 0.0 ? 0 : last_region_; }
+  /// How deep a point at rest is in the second region; negative: in the first one.
+  double depth_mm(const Vec3& p_A) const noexcept;
+  /// Displacement (mm) of a point at rest as part of a region: the sum of drives * mode. `drives`: drivers against the
+  /// CT's (MotionParts::at_ct).
+  Vec3 displacement_mm(int region, const Vec3& p_A, const Scalars& drives) const noexcept;
   /// The same with its gradient, d displacement / d p_A.
   struct Field {
     Vec3 displacement_mm;
     Mat3 gradient;
   };
-  Field field(int region, const Vec3& p_A, const Scalars& drivers) const noexcept;
+  Field field(int region, const Vec3& p_A, const Scalars& drives) const noexcept;
+  /// No point of the tissue moves further (mm) with these drives.
+  double most_displacement_mm(const Scalars& drives) const noexcept;
+  /// The displacements of the regions differ by no more (mm).
+  double most_slide_mm(const Scalars& drives) const noexcept;
 
  private:
+  struct Sums {
+    Vec3 middle_mm = Vec3::Zero();  ///< Displacement of the node in the middle; the rest is relative to it.
+    Eigen::Array4f value = Eigen::Array4f::Zero();
+    std::array<Eigen::Array4f, 3> along{Eigen::Array4f::Zero(), Eigen::Array4f::Zero(), Eigen::Array4f::Zero()};
+  };
   explicit MotionModel(MotionParts parts);
-  bool contains(std::size_t region, const Vec3& p_A) const noexcept;
+  template <bool kHasSlope>
+  Sums sums(int region, const Vec3& p_A, const Scalars& drives) const noexcept;
 
   MotionParts parts_;
   std::string hash_;
+  int last_region_ = 0;
+  /// By region: four floats (x, y, z, 0) for each driver of a node, then the next node.
+  std::vector<float> coefficients_;
+  std::size_t region_stride_ = 0;
+  Vec3 nodes_per_mm_ = Vec3::Ones();
+  std::array<double, kMostDrivers> longest_mm_{}, widest_mm_{};
 };
 
 }  // namespace trocar::motion

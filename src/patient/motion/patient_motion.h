@@ -1,16 +1,9 @@
 #pragma once
 
+#include "motion/breathing.h"
 #include "motion/motion_model.h"
 
 namespace trocar::motion {
-
-/// What a motion model needs to tell where the patient is at one moment.
-struct MotionState {
-  double time_s = 0.0;  ///< Of the motion's clock (MotionDrive).
-  double phase = 0.0;   ///< Of the breath, 0..1; 0: end-expiration.
-  MotionModel::Scalars drivers{};
-  MotionModel::Scalars rates_per_s{};
-};
 
 /// Where the patient is at one moment: the map between frame A (the anatomy at rest, as in the CT) and frame P (the
 /// patient now). An immutable value, made once by the clock (MotionDrive) and taken by everything that looks at the
@@ -31,8 +24,8 @@ class PatientMotion {
 
   /// A point of the tissue: where it is now.
   Vec3 to_now(const Vec3& p_A) const noexcept { return model_ == nullptr ? p_A : moved(p_A); }
-  /// The tissue at a point now: where it is at rest. To 1e-6 mm within a region. Where regions that slide past each
-  /// other leave a gap or overlap, the region that is nearest, or listed first, has the point.
+  /// The tissue at a point now: where it is at rest. To 1e-5 mm within a region. Where regions that slide past each
+  /// other leave a gap or overlap, the border is in the middle of it.
   Vec3 to_rest(const Vec3& p_P) const noexcept { return model_ == nullptr ? p_P : resting(p_P); }
   /// Region of the tissue at rest; 0 without a model.
   int region(const Vec3& p_A) const noexcept { return model_ == nullptr ? 0 : model_->region_of(p_A); }
@@ -66,41 +59,25 @@ class PatientMotion {
   Vec3 moved(const Vec3& p_A) const noexcept;
   Vec3 resting(const Vec3& p_P) const noexcept;
   Vec3 resting_in(int region, const Vec3& p_P) const noexcept;
+  Vec3 within(int region, Vec3 p_A) const noexcept;
 
   const MotionModel* model_ = nullptr;
   MotionState state_;
+  MotionModel::Scalars drives_{};  ///< Drivers against the CT's.
+  double slide_mm_ = 0.0;          ///< The regions' displacements differ by no more.
 };
 
-/// What drives a patient's motion: the same in every process, in messages and in recordings. With a model and a time it
-/// gives the motion exactly.
-struct MotionDrive {
-  double period_s = 60.0 / 14.0;  ///< Of a breath. Range 1..60. An adult at rest: 14 a minute. [assumed]
-  double begins_s = 0.0;          ///< A time at which a breath begins, at end-expiration.
-  bool is_held = false;           ///< The breath is held at held_phase.
-  double held_phase = 0.0;        ///< 0..1.
-  MotionModel::Scalars depth{};   ///< Value of each driver at end-inspiration. Range -kMostDrive..kMostDrive.
-
-  bool operator==(const MotionDrive&) const = default;
-};
-
-/// Error: a number out of its range.
-Status check(const MotionDrive& drive);
-
-/// Phase of the breath at a time, 0..1. Real-time safe.
-double phase_at(const MotionDrive& drive, double time_s) noexcept;
-/// The motion at a phase: each driver is depth * (1 - cos(2 pi phase)) / 2. Recordings contain the phase of every tick:
-/// with the drive it restores the motion to the bit. `time_s` is only noted. Real-time safe.
-MotionState state_of_phase(const MotionDrive& drive, double phase, double time_s = 0.0) noexcept;
-inline MotionState state_at(const MotionDrive& drive, double time_s) noexcept {
-  return state_of_phase(drive, phase_at(drive, time_s), time_s);
+/// True if a drive moves a patient that has a model.
+inline bool moves(const MotionDrive& drive) noexcept {
+  return drive.depth != MotionModel::Scalars{};
 }
 
 /// The one clock of a patient's motion. Real-time safe.
 struct MotionClock {
   const MotionModel* model = nullptr;  ///< nullptr: the patient does not move.
-  MotionDrive drive;
+  MotionDrive drive;                   ///< Without any depth the patient is at rest, as in the CT.
 
-  PatientMotion at(double time_s) const noexcept { return {model, state_at(drive, time_s)}; }
+  PatientMotion at(double time_s) const noexcept { return {moves(drive) ? model : nullptr, state_at(drive, time_s)}; }
 };
 
 }  // namespace trocar::motion

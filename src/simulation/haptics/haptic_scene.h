@@ -94,19 +94,11 @@ struct HapticScene {
   Pose X_SN;
   Vec3 gravity_P = Vec3::UnitY();  ///< Unit, downwards: a supine patient lies on +y.
 
-  /// Where the patient is at a time of the ticks; at rest, in phase 0, without a motion model or if nothing drives it.
+  /// Where the patient is at a time of the ticks; at rest without a motion model or if nothing drives it.
   /// Real-time safe.
   motion::PatientMotion motion_at(double time_s) const noexcept {
-    return moves() ? motion::PatientMotion(patient->motion.get(), motion::state_at(options.motion, time_s))
-                   : motion::PatientMotion();
-  }
-  /// Where it was at a recorded tick, to the bit. Real-time safe.
-  motion::PatientMotion motion_of(const telemetry::TickSample& sample) const noexcept {
-    if (!moves()) return {};
-    return {patient->motion.get(), motion::state_of_phase(options.motion, sample.breathing, sample.time_s)};
-  }
-  bool moves() const noexcept {
-    return patient != nullptr && patient->motion != nullptr && options.motion.depth != motion::MotionModel::Scalars{};
+    const motion::MotionModel* const model = patient != nullptr ? patient->motion.get() : nullptr;
+    return motion::MotionClock{model, options.motion}.at(time_s);
   }
 };
 
@@ -119,6 +111,10 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
                                                              const NeedleGeometry& needle,
                                                              const stylus::DeviceCapability& device = {},
                                                              const HapticOptions& options = {});
+
+/// Where a patient with this model was at a recorded tick, to the bit, if `drive` drove it then. Real-time safe.
+motion::PatientMotion recorded_motion(const motion::MotionModel* model, const motion::MotionDrive& drive,
+                                      const telemetry::TickSample& sample) noexcept;
 
 /// Tissue at a point of the anatomy at rest. Real-time safe.
 struct TissueAt {

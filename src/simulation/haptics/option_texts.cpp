@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kForceModel = "force_model";
 constexpr std::string_view kOfConstraint = "constraint.";
 
-static_assert(motion::kMostDrivers == 4, "the list of options names each driver");
+static_assert(motion::kMostDrivers == 2, "the list of options names each driver");
 
 /// The single list of options and device numbers: calls visit(name, field) for each; a field is a double or a bool.
 template <class Options, class Device, class Visitor>
@@ -34,8 +34,16 @@ void visit_numbers(Options& options, Device& device, Visitor&& visit) {
   visit("motion.held_phase", options.motion.held_phase);
   visit("motion.depth_1", options.motion.depth[0]);
   visit("motion.depth_2", options.motion.depth[1]);
-  visit("motion.depth_3", options.motion.depth[2]);
-  visit("motion.depth_4", options.motion.depth[3]);
+  visit("motion.pause", options.motion.pause_share);
+  visit("motion.irregularity", options.motion.irregularity);
+  visit("motion.cough_every", options.motion.cough_every_s);
+  visit("motion.seed", options.motion.seed);
+  visit("motion.hold", options.motion.hold_s);
+  visit("motion.release", options.motion.release_s);
+  visit("motion.hold_limit", options.motion.hold_limit_s);
+  visit("motion.drift", options.motion.drift_per_s);
+  visit("motion.first_depth", options.motion.first_depth);
+  visit("motion.drifted", options.motion.drifted);
   visit("device.peak_force", device.peak_force_n);
   visit("device.peak_torque", device.peak_torque_nmm);
   visit("device.peak_roll", device.peak_roll_nmm);
@@ -61,8 +69,11 @@ Status restore_option(std::string_view name, std::string_view value, HapticOptio
     if (known != name) return;
     is_known = true;
     if (name.starts_with(kOfConstraint)) return;
-    if constexpr (std::is_same_v<std::remove_reference_t<decltype(field)>, bool>)
+    using Field = std::remove_reference_t<decltype(field)>;
+    if constexpr (std::is_same_v<Field, bool>)
       field = number != 0.0;
+    else if constexpr (std::is_same_v<Field, std::uint32_t>)
+      field = static_cast<std::uint32_t>(std::clamp(number, 0.0, 4294967295.0));
     else
       field = number;
   });

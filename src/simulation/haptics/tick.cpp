@@ -42,16 +42,21 @@ inline Wrench weight_compensation(const HapticScene& scene, const Mat3& R_PS) no
   return {lift_P, arm_P.cross(lift_P)};
 }
 
-/// Last step of every tick. Limits `device_f_n`, the torque and its part about the stylus to the device's peaks and
-/// adds limit events. Rotates them, and their parts of tissue and weight, to W.
-/// Tip and axis of a sample in the anatomy at rest.
-inline void note_rest(const motion::PatientMotion& motion, telemetry::TickSample& sample) noexcept {
+/// Where the patient is, and tip and axis of a sample in the anatomy at rest.
+inline void note_motion(const motion::PatientMotion& motion, telemetry::TickSample& sample) noexcept {
+  static_assert(motion::kMostDrivers == 2, "a sample has two drivers and their rates");
+  const motion::MotionState& state = motion.state();
+  sample.breathing = state.phase;
+  sample.is_breath_held = state.is_breath_held;
+  sample.drivers = {state.drivers[0], state.drivers[1], state.rates_per_s[0], state.rates_per_s[1]};
   telemetry::set_at_rest(sample);
   if (motion.is_rest()) return;
   sample.rest_tip_mm = motion.to_rest(sample.tip_mm);
   sample.rest_axis = motion.line_to_rest(sample.rest_tip_mm, sample.axis).normalized();
 }
 
+/// Last step of every tick. Limits `device_f_n`, the torque and its part about the stylus to the device's peaks and
+/// adds limit events. Rotates them, and their parts of tissue and weight, to W.
 inline void limit_to_device(HapticOutput& output, const Wrench& tissue_P, const Wrench& weight_P,
                             const Vec3& stylus_axis_P, EventList& events, const HapticScene& scene) noexcept {
   telemetry::TickSample& sample = output.sample;
@@ -143,7 +148,6 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
   HapticOutput output;
   telemetry::TickSample& sample = output.sample;
   sample.time_s = input.time_s;
-  sample.breathing = input.motion.phase();
   fill_insertion(sample, step.axial);
   sample.f_constraint_n = step.held_P.force_n;
   sample.f_tip_proxy_n = step.tip_proxy_P;
@@ -153,7 +157,7 @@ HapticOutput tick(HapticState& state, const HapticInput& input, const HapticScen
   sample.tau_nmm = step.held_P.torque_nmm + weight.torque_nmm;
   sample.device_mm = input.tool.p_mm;
   sample.device_rotation_wxyz = input.tool.rotation_wxyz;
-  note_rest(input.motion, sample);
+  note_motion(input.motion, sample);
   sample.contact_to_puncture_mm = state.needle.path.contact_to_puncture_P;
 
   EventList events(sample);
@@ -196,8 +200,7 @@ HapticOutput tick_contact(HapticState& state, const HapticInput& input, const Ha
   sample.device_f_n = sample.f_total_n;
   sample.device_mm = input.tool.p_mm;
   sample.device_rotation_wxyz = input.tool.rotation_wxyz;
-  sample.breathing = input.motion.phase();
-  note_rest(input.motion, sample);
+  note_motion(input.motion, sample);
 
   EventList events(sample);
   if (step.has_jumped) events.add(telemetry::LimitReason::kJumped);

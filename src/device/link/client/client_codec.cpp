@@ -53,7 +53,14 @@ constexpr Range kSettingValues = {-1e9, 1e9};
 constexpr Range kCouplings = {-1e6, 1e6};
 constexpr Range kBreaths_s = {1.0, 60.0};  // those of motion::check, like the next two
 constexpr Range kMotionTimes_s = {-1e9, 1e9};
-constexpr Range kDrives = {-motion::kMostDrive, motion::kMostDrive};
+constexpr Range kDrives = {motion::kLeastDrive, motion::kMostDrive};
+constexpr Range kPauses = {0.0, 0.6};
+constexpr Range kIrregularities = {0.0, 0.4};
+constexpr Range kCoughs_s = {0.0, 3600.0};
+constexpr Range kHoldLimits_s = {1.0, 120.0};
+constexpr Range kDrifts = {-0.1, 0.1};
+constexpr Range kFirstDepths = {0.3, 2.0};
+constexpr Range kShifts = {-1.0, 1.0};
 constexpr double kMostSpeed_mm_per_s = 1e5;
 constexpr double kMostTurning_rad_per_s = 1e4;
 
@@ -63,9 +70,12 @@ using ClientMember = Member<wire::ClientBody>;
 using CommandMember = Member<wire::What>;
 
 wire::MotionDrive packed(const motion::MotionDrive& drive) {
-  static_assert(motion::kMostDrivers == 4, "the schema has four depths");
-  return {drive.period_s, drive.begins_s, drive.held_phase,
-          flatbuffers::span<const double, motion::kMostDrivers>(drive.depth), drive.is_held};
+  static_assert(motion::kMostDrivers == 2, "the schema has two depths");
+  return {drive.period_s,     drive.begins_s,     flatbuffers::span<const double, motion::kMostDrivers>(drive.depth),
+          drive.pause_share,  drive.irregularity, drive.cough_every_s,
+          drive.held_phase,   drive.hold_s,       drive.release_s,
+          drive.hold_limit_s, drive.drift_per_s,  drive.first_depth,
+          drive.drifted,      drive.seed,         drive.is_held};
 }
 
 CommandMember build_what(Builder& b, const LoadScene& scene) {
@@ -161,7 +171,18 @@ motion::MotionDrive read(const wire::MotionDrive& from, Inspection& in) {
   drive.held_phase = in.number(from.held_phase(), kShares, "motion.held_phase");
   for (std::size_t n = 0; n < drive.depth.size(); ++n)
     drive.depth[n] = in.number((*from.depth())[static_cast<flatbuffers::uoffset_t>(n)], kDrives, "motion.depth");
+  drive.pause_share = in.number(from.pause_share(), kPauses, "motion.pause_share");
+  drive.irregularity = in.number(from.irregularity(), kIrregularities, "motion.irregularity");
+  drive.cough_every_s = in.number(from.cough_every_s(), kCoughs_s, "motion.cough_every_s");
+  drive.hold_s = in.number(from.hold_s(), kMotionTimes_s, "motion.hold_s");
+  drive.release_s = in.number(from.release_s(), kMotionTimes_s, "motion.release_s");
+  drive.hold_limit_s = in.number(from.hold_limit_s(), kHoldLimits_s, "motion.hold_limit_s");
+  drive.drift_per_s = in.number(from.drift_per_s(), kDrifts, "motion.drift_per_s");
+  drive.first_depth = in.number(from.first_depth(), kFirstDepths, "motion.first_depth");
+  drive.drifted = in.number(from.drifted(), kShifts, "motion.drifted");
+  drive.seed = from.seed();
   drive.is_held = from.is_held();
+  if (in.is_valid() && !motion::check(drive)) in.refuse("a number out of its range", "motion");
   return drive;
 }
 

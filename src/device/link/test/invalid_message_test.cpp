@@ -144,7 +144,13 @@ TEST(UnsoundMotion, IsRefused) {
     EXPECT_FALSE(accepts({.period_s = bad}));
   EXPECT_FALSE(accepts({.begins_s = 1e12}));
   EXPECT_FALSE(accepts({.held_phase = 1.1}));
-  EXPECT_FALSE(accepts({.depth = {0.0, 0.0, 0.0, -1.6}}));
+  EXPECT_FALSE(accepts({.depth = {0.0, -0.4}}));
+  EXPECT_FALSE(accepts({.pause_share = 0.7}));
+  EXPECT_FALSE(accepts({.irregularity = 0.5}));
+  EXPECT_FALSE(accepts({.cough_every_s = 2.0})) << "no more often than every 5 s";
+  EXPECT_FALSE(accepts({.hold_s = -1e12}));
+  EXPECT_FALSE(accepts({.hold_limit_s = 0.5}));
+  EXPECT_FALSE(accepts({.drift_per_s = 0.2}));
 }
 
 TEST(UnsoundPose, RefusesATooDistantPosition) {

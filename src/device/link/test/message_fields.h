@@ -29,8 +29,8 @@ void each_field(T& value, Visit&& visit) {
     auto& [a, b, c, d, e, f, g] = value;
     all(a, b, c, d, e, f, g);
   } else if constexpr (std::is_same_v<Plain, motion::MotionDrive>) {
-    auto& [a, b, c, d, e] = value;
-    all(a, b, c, d, e);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = value;
+    all(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
   } else if constexpr (std::is_same_v<Plain, Command>) {
     auto& [a, b] = value;
     all(a, b);

@@ -78,6 +78,12 @@ class RandomMessages {
   void fill(motion::MotionDrive& drive) {
     each_field(drive, [this](auto& field) { fill(field); });
     drive.period_s = 1.0 + std::abs(drive.period_s);
+    drive.hold_limit_s = 1.0 + std::abs(drive.hold_limit_s);
+    drive.first_depth = 1.0 + std::abs(drive.first_depth);
+    drive.pause_share *= 0.6;
+    drive.irregularity *= 0.4;
+    drive.drift_per_s *= 0.1;
+    drive.cough_every_s = below(2) == 0 ? 0.0 : 5.0 + std::abs(drive.cough_every_s);
   }
   void fill(LoadScene& scene) {
     each_field(scene, [this](auto& field) { fill(field); });

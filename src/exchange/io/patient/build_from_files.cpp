@@ -20,6 +20,7 @@
 #include "io/ct_series/dicom_folder.h"
 #include "io/image/image_file.h"
 #include "io/patient/label_sources.h"
+#include "motion_builder/breathing_model.h"
 #include "patient_builder/build_patient.h"
 #include "patient_builder/derive/derive_structures.h"
 #include "patient_builder/plausibility/judge_anatomy.h"
@@ -137,8 +138,10 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
         fmt::format("CT rescaled: HU = {} * stored + {}", files.rescale->slope, files.rescale->intercept));
   for (const std::filesystem::path& path : files.labels) options.provenance.push_back("labels: " + last_name(path));
   TROCAR_TRY_STATUS(mirror(files.mirroring, ct, sources, options.provenance));
-  return patient_builder::build_patient(std::move(ct), std::move(sources), options, warnings,
-                                        part_of(progress, 0.4, 1.0));
+  TROCAR_TRY(anatomy::VirtualPatient patient, patient_builder::build_patient(std::move(ct), std::move(sources), options,
+                                                                             warnings, part_of(progress, 0.4, 0.9)));
+  motion_builder::add_breathing_model(patient, part_of(progress, 0.9, 1.0));
+  return patient;
 }
 
 namespace fs = std::filesystem;

@@ -6,14 +6,14 @@
 #include <filesystem>
 
 #include "core/files/folders.h"
-#include "core/files/input_file.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "io/image/detail/raw_volume.h"
 #include "io/image/detail/volume_file.h"
 #include "io/markups_file.h"
 #include "io/patient/detail/patient_toml.h"
-#include "motion/motion_file.h"
+#include "io/patient/motion_files.h"
+#include "motion_builder/breathing_model.h"
 #include "phantom/phantom.h"
 
 namespace trocar::io {
@@ -46,16 +46,6 @@ Status load_volumes(const fs::path& folder, anatomy::VirtualPatient& patient) {
   return {};
 }
 
-/// nullptr: the folder has no motion model.
-Result<std::shared_ptr<const motion::MotionModel>> load_motion(const fs::path& folder) {
-  const fs::path file = folder / detail::kMotionFile;
-  std::error_code error;
-  if (!fs::exists(fs::symlink_status(file, error))) return std::shared_ptr<const motion::MotionModel>();
-  TROCAR_TRY(const InputFile input, InputFile::open(file, FileKind::kToml, folder));
-  TROCAR_TRY(const std::string text, input.read_all());
-  return motion::parse_motion(text, file.string());
-}
-
 }  // namespace
 
 void round_as_saved(anatomy::VirtualPatient& patient) {
@@ -71,6 +61,12 @@ Result<PatientTitle> load_patient_title(const fs::path& folder) {
 }
 
 Result<anatomy::VirtualPatient> load_patient(const fs::path& folder) {
+  TROCAR_TRY(anatomy::VirtualPatient patient, load_anatomy(folder));
+  TROCAR_TRY(patient.motion, load_motion_model(folder));
+  return patient;
+}
+
+Result<anatomy::VirtualPatient> load_anatomy(const fs::path& folder) {
   TROCAR_TRY(detail::PatientDescription description, detail::load_description(folder));
   anatomy::VirtualPatient patient;
   patient.name = std::move(description.name);
@@ -84,7 +80,6 @@ Result<anatomy::VirtualPatient> load_patient(const fs::path& folder) {
   TROCAR_TRY_STATUS(detail::check_label_ids(patient, folder.string()));
   TROCAR_TRY(patient.landmarks, read_landmarks(folder / detail::kLandmarkFile, folder));
   TROCAR_TRY(patient.paths, read_paths(folder / detail::kPathFile, folder));
-  TROCAR_TRY(patient.motion, load_motion(folder));
   patient.content_hash = anatomy::hash_patient(patient);
   log_info("loaded {}: {} labels, {:.1f} Mvoxel", folder.string(), patient.label_table.labels.size(),
            1e-6 * static_cast<double>(patient.labels.voxels.size()));
@@ -148,8 +143,9 @@ Result<std::string> find_recorded_patient(const std::string& recorded, const std
 Result<anatomy::VirtualPatient> load_source(const PatientSource& source, const Progress& progress) {
   if (is_path(source.folder_or_name)) return load_patient(source.folder_or_name);
   TROCAR_TRY(anatomy::VirtualPatient patient,
-             phantom::generate_phantom(source.folder_or_name, source.seed, {}, progress));
+             phantom::generate_phantom(source.folder_or_name, source.seed, {}, part_of(progress, 0.0, 0.8)));
   round_as_saved(patient);
+  motion_builder::add_breathing_model(patient, part_of(progress, 0.8, 1.0));
   return patient;
 }
 

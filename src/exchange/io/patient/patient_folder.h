@@ -50,6 +50,8 @@ Status add_patient_meshes(const std::filesystem::path& folder, const std::vector
 /// version, a missing or damaged file, volumes on different grids, a label without a name, a content hash that does not
 /// match.
 Result<anatomy::VirtualPatient> load_patient(const std::filesystem::path& folder);
+/// The same without the motion model, whatever it is.
+Result<anatomy::VirtualPatient> load_anatomy(const std::filesystem::path& folder);
 /// Data for a list of patients; read without the volumes. Errors: not a patient folder, a newer version, a damaged
 /// file.
 struct PatientTitle {

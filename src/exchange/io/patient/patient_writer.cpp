@@ -12,10 +12,10 @@
 #include "io/markups_file.h"
 #include "io/mesh_file.h"
 #include "io/patient/detail/patient_toml.h"
+#include "io/patient/motion_files.h"
 #include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
 #include "io/sequence/transform_file.h"
-#include "motion/motion_file.h"
 
 namespace trocar::io {
 namespace fs = std::filesystem;
@@ -88,8 +88,7 @@ Status write_contents(const anatomy::VirtualPatient& patient, const std::vector<
   TROCAR_TRY(description.meshes, write_meshes(meshes, folder, part_of(progress, 0.8, 1.0)));
   TROCAR_TRY_STATUS(write_landmarks(patient.landmarks, folder / detail::kLandmarkFile));
   TROCAR_TRY_STATUS(write_paths(patient.paths, folder / detail::kPathFile));
-  if (patient.motion != nullptr)
-    TROCAR_TRY_STATUS(write_file_atomically(folder / detail::kMotionFile, motion::to_toml(*patient.motion)));
+  if (patient.motion != nullptr) TROCAR_TRY_STATUS(save_motion_model(*patient.motion, folder));
   TROCAR_TRY_STATUS(write_file_atomically(folder / detail::kDescriptionFile, detail::to_toml(description)));
   report(progress, "saved", 1.0);
   return {};

@@ -58,7 +58,7 @@ motion::PatientMotion AttemptLoop::motion_now() {
     if (haptics::restore_options(newest->options, options, device)) drive_ = options.motion;
     drive_scene_ = scenes.newest_number();
   }
-  return {model, motion::state_of_phase(drive_, needle_.last->breathing, needle_.last->time_s)};
+  return haptics::recorded_motion(model, drive_, *needle_.last);
 }
 
 NeedleView AttemptLoop::needle_now() const {

@@ -136,7 +136,8 @@ class RecordedTicks {
   /// Where the patient is: as its clock says, or as recorded.
   motion::PatientMotion motion(std::size_t tick, const haptics::HapticScene& scene) const noexcept {
     if (session_ == nullptr || session_->samples.empty()) return scene.motion_at(time_s(tick));
-    return scene.motion_of(session_->samples[std::min(tick, session_->samples.size() - 1)]);
+    return haptics::recorded_motion(scene.patient->motion.get(), scene.options.motion,
+                                    session_->samples[std::min(tick, session_->samples.size() - 1)]);
   }
   /// The interruption that ends at the tick; null: none.
   const tasks::Interruption* interruption(std::size_t tick) const noexcept {

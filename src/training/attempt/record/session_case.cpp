@@ -71,7 +71,8 @@ Status check_motion(const storage::Session& session, const anatomy::VirtualPatie
     TROCAR_TRY_STATUS(motion::check(options.motion));
   }
   const auto has_phase = [](const telemetry::TickSample& sample) {
-    return sample.breathing >= 0.0 && sample.breathing <= 1.0;
+    return sample.breathing >= 0.0 && sample.breathing <= 1.0 &&
+           std::ranges::all_of(sample.drivers, [](double driver) { return std::isfinite(driver); });
   };
   if (!std::ranges::all_of(session.samples, has_phase))
     return fail("a tick has no phase of the patient's motion", "session", "record the attempt again");

@@ -19,8 +19,8 @@ SessionMotion::SessionMotion(const storage::Session& session, const anatomy::Vir
 motion::PatientMotion SessionMotion::at(const telemetry::TickSample& sample) const noexcept {
   const auto next =
       std::ranges::upper_bound(drives_, sample.time_s, {}, &std::pair<double, motion::MotionDrive>::first);
-  if (next == drives_.begin()) return {nullptr, motion::state_of_phase({}, sample.breathing, sample.time_s)};
-  return {model_, motion::state_of_phase(std::prev(next)->second, sample.breathing, sample.time_s)};
+  return haptics::recorded_motion(model_, next == drives_.begin() ? motion::MotionDrive() : std::prev(next)->second,
+                                  sample);
 }
 
 }  // namespace trocar::attempt

@@ -40,7 +40,6 @@ inline constexpr const char* kLabelFile = "labels.nrrd";
 inline constexpr const char* kDistanceFile = "skin_distance.nrrd";
 inline constexpr const char* kLandmarkFile = "landmarks.mrk.json";
 inline constexpr const char* kPathFile = "paths.mrk.json";
-inline constexpr const char* kMotionFile = "motion.toml";  ///< Optional.
 
 inline constexpr const char* kBuildAgain = "build the patient again";
 

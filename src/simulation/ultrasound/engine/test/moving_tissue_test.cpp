@@ -37,14 +37,10 @@ Vec2 brightest_T(const BasebandFrame& frame, const Vec2& near_T, double within_m
 /// Turns the laboratory's motion into the image plane of the identity pose: tissue shears along the beam and bulges
 /// across it.
 std::shared_ptr<const motion::MotionModel> motion_in_plane(const Vec3& centre_A) {
-  motion::MotionParts parts = motion::testing::sliding_model(-200.0, centre_A)->parts();
-  parts.modes[0].displacement_mm = {0.0, 9.0, 1.5};
-  parts.modes[0].axis_A = Vec3::UnitX();
-  parts.modes[0].centre_A = centre_A - 30.0 * Vec3::UnitX();
-  parts.modes[0].extent_mm = 40.0;
-  parts.modes[1].displacement_mm = {6.0, 0.0, 0.0};
-  parts.modes[1].extent_mm = 30.0;
-  return *motion::MotionModel::make(std::move(parts), "test");
+  using namespace motion::testing;
+  return made(whole_body({ramp({0.0, 9.0, 1.5}, centre_A - 30.0 * Vec3::UnitX(), Vec3::UnitX(), 40.0),
+                          bump({6.0, 0.0, 0.0}, centre_A, 30.0)},
+                         lattice_around(centre_A, 160.0, 5.0)));
 }
 
 TEST(MovingTissue, MatchesAnOppositeTransducerShift) {
@@ -108,13 +104,8 @@ TEST(MovingTissue, CarriesItsSpeckleAlong) {
   box.half_thickness_mm = 30.0;
   BMode engine(homogeneous_scene(box, TestTissue::kLossless), transducer, plain(transducer));
   // A shear that does not turn the pattern much: the patch moves by many of its grains.
-  motion::MotionParts parts = motion_in_plane({0.0, 25.0, 0.0})->parts();
-  parts.modes.resize(1);
-  parts.modes[0].displacement_mm = {2.5, 0.0, 0.0};
-  parts.modes[0].axis_A = Vec3::UnitY();
-  parts.modes[0].centre_A = Vec3::Zero();
-  parts.modes[0].extent_mm = 25.0;
-  const auto model = *motion::MotionModel::make(std::move(parts), "test");
+  using namespace motion::testing;
+  const auto model = made(whole_body({ramp({2.5, 0.0, 0.0}, Vec3::Zero(), Vec3::UnitY(), 25.0)}));
   BModeInput input;
   const EchoPatch still = envelope_patch(engine.render(input), {100, 160, 19.0, 21.0});
   input.motion = {model.get(), {.drivers = {1.0}}};
@@ -139,11 +130,8 @@ TEST(MovingTissue, SlidesAlongTheBorderOfRegions) {
   const std::vector<TestLayer> layers{{20.0, TestTissue::kWater}, {60.0, TestTissue::kPlus12}};
   SceneBox box = box_for(transducer, transducer.depth_mm, 0.3);
   BMode engine(layers_scene(box, layers), transducer, plain(transducer));
-  motion::MotionParts parts = motion::testing::sliding_model(0.0, Vec3::Zero())->parts();
-  parts.modes.resize(1);
-  parts.modes[0].profile = motion::Profile::kUniform;
-  parts.modes[0].displacement_mm = {0.0, 5.0, 0.0};
-  const auto model = *motion::MotionModel::make(std::move(parts), "test");
+  using namespace motion::testing;
+  const auto model = made(sliding_parts(flat_border(Vec3::UnitX(), 0.0), {uniform({0.0, 5.0, 0.0})}));
   BModeInput input;
   input.motion = {model.get(), {.drivers = {1.0}}};
   const BasebandFrame& frame = engine.render(input);

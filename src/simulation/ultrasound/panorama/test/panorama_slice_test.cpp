@@ -77,12 +77,9 @@ TEST(PanoramaSlice, BallFollowsItsTissue) {
                                         [&](const Vec3& p_U) { return (p_U - centre_U).norm() < 2.5 ? 220 : 60; }),
                              X_PU);
   PanoramaEngine engine(lossless(transducer), panorama, transducer, small_scan(transducer));
-  motion::MotionParts parts = motion::testing::sliding_model(-200.0, centre_A)->parts();
-  parts.modes[0].displacement_mm = {0.0, 9.0, 0.0};
-  parts.modes[0].axis_A = Vec3::UnitX();
-  parts.modes[0].centre_A = centre_A - 30.0 * Vec3::UnitX();
-  parts.modes[1].displacement_mm = {-6.0, 0.0, 0.0};
-  const auto model = *motion::MotionModel::make(std::move(parts), "test");
+  using namespace motion::testing;
+  const auto model = made(whole_body({ramp({0.0, 9.0, 0.0}, centre_A - 30.0 * Vec3::UnitX(), Vec3::UnitX(), 90.0),
+                                      bump({-6.0, 0.0, 0.0}, centre_A, 35.0)}));
   const motion::MotionClock clock{model.get(), motion::testing::sliding_drive()};
   for (int n = 0; n < 10; ++n) {
     BModeInput input;
