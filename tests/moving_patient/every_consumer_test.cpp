@@ -385,7 +385,7 @@ TEST(EveryConsumer, ReplayShowsTheTag) {
   attempt::RunOptions options;
   options.operator_name = "constant-velocity:20";
   options.patient_source = choice.patient_source;
-  options.motion = motion::testing::sliding_drive();
+  open->the_case.breathing = motion::testing::sliding_drive();
   options.session = folder / "first.session";
   const auto first = attempt::run_session(open->the_case, options);
   ASSERT_TRUE(first) << first.error().text();
@@ -402,7 +402,6 @@ TEST(EveryConsumer, ReplayShowsTheTag) {
 
   options.operator_name = "replay:" + options.session.string();
   options.session = folder / "again.session";
-  options.motion = {};
   const auto again = attempt::run_session(open->the_case, options);
   ASSERT_TRUE(again) << again.error().text();
   EXPECT_EQ(again->ticks_hash, first->ticks_hash) << "a replay is exact";

@@ -4,6 +4,7 @@
 
 #include "anatomy/structure_words.h"
 #include "attempt/live/realtime_session.h"
+#include "cli/breathing_option.h"
 #include "cli/commands.h"
 #include "cli/constants.h"
 #include "cli/patient_option.h"
@@ -326,6 +327,7 @@ void add_run_command(Command& program, Action& action) {
   command.add_option("--posture", a->the_case.posture, kPostureHelp);
   command.add_option("--level", a->the_case.level,
                      "Level of difficulty of the task, by name or number; see trocar task list");
+  add_breathing_options(command, a->the_case.breathing, a->the_case.held_phase);
   command.add_option("--tissues", a->the_case.tissue_file, "Tissue table (TOML) instead of data/tissues.toml");
   command.add_option("--profile", a->the_case.profile, "Profile of the tissue table: paper-a, tented ...");
   command

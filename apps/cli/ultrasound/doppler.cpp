@@ -64,14 +64,14 @@ Result<ultrasound::DopplerSettings> gather_doppler(const DopplerArguments& a) {
 ColourPicture colour_picture(std::shared_ptr<const ultrasound::VesselFlow> flow,
                              const ultrasound::DopplerSettings& settings, double time_s,
                              const ultrasound::EchoEngine& engine, const ultrasound::BasebandFrame& echoes,
-                             const Pose& X_PT, const image::GrayImage& picture,
+                             const Scan& scan, const image::GrayImage& picture,
                              const ultrasound::RasterGeometry& raster, std::uint64_t seed) {
   ultrasound::ColourDoppler doppler(std::move(flow));
   doppler.settings = settings;
   ColourPicture colour;
   colour.settings = settings;
-  ultrasound::DopplerInput input{
-      X_PT, echoes.geometry, echoes.beam, time_s, seed, &engine, motion::MotionClock{}.at(time_s)};
+  ultrasound::DopplerInput input{scan.X_PT, echoes.geometry,        echoes.beam, time_s, seed,
+                                 &engine,   motion_at(scan, time_s)};
   for (int n = 0; n < kPictures; ++n, ++input.seed) colour.scale_cm_per_s = doppler.render(input).scale_cm_per_s;
   colour.image = doppler.overlay(picture, raster);
   return colour;

@@ -6,6 +6,7 @@
 
 #include "cli/action.h"
 #include "cli/output.h"
+#include "cli/ultrasound/scan.h"
 #include "ultrasound/doppler/colour_doppler.h"
 #include "ultrasound/engine/echo_engine.h"
 
@@ -33,7 +34,7 @@ struct ColourPicture {
 ColourPicture colour_picture(std::shared_ptr<const ultrasound::VesselFlow> flow,
                              const ultrasound::DopplerSettings& settings, double time_s,
                              const ultrasound::EchoEngine& engine, const ultrasound::BasebandFrame& echoes,
-                             const Pose& X_PT, const image::GrayImage& picture,
+                             const Scan& scan, const image::GrayImage& picture,
                              const ultrasound::RasterGeometry& raster, std::uint64_t seed);
 /// Draws the colour bar beside the gray wedge.
 void draw_colour_bar(image::RgbImage& image, const ColourPicture& picture);

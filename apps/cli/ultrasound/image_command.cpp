@@ -11,6 +11,7 @@
 #include <span>
 
 #include "bench/figures.h"
+#include "cli/breathing_option.h"
 #include "cli/commands.h"
 #include "cli/constants.h"
 #include "cli/ultrasound/doppler.h"
@@ -157,8 +158,10 @@ Timing time_frames(ultrasound::EchoEngine& engine, ultrasound::Scanner& scanner,
   for (int n = 0; n < frames; ++n) {
     core::report(progress, "timing frames", static_cast<double>(n) / frames);
     const auto start = Clock::now();
-    const ultrasound::BasebandFrame& echoes =
-        engine.render({ultrasound::sway(scan.X_PT, n), needles, static_cast<double>(n) / 60.0});
+    const ultrasound::BasebandFrame& echoes = engine.render({.X_PT = ultrasound::sway(scan.X_PT, n),
+                                                             .needles = needles,
+                                                             .time_s = n / 60.0,
+                                                             .motion = motion_at(scan, n / 60.0)});
     const auto heard = Clock::now();
     scanner.show(echoes, seed + static_cast<std::uint64_t>(n));
     const auto shown = Clock::now();
@@ -234,7 +237,8 @@ Status make_image(const ImageArguments& arguments) {
   needle.shaft_P = request.needle.shaft_P;
   needle.diameter_mm = request.needle.diameter_mm;
   const std::span<const ultrasound::NeedleEcho> needles(&needle, needle.shaft_P.empty() ? 0 : 1);
-  const ultrasound::BasebandFrame& echoes = engine.render({scan.X_PT, needles, 0.0});
+  const ultrasound::BasebandFrame& echoes =
+      engine.render({.X_PT = scan.X_PT, .needles = needles, .motion = motion_at(scan, 0.0)});
   const double coupled = ultrasound::coupled_share(echoes);
   const double panorama_share = made.panorama != nullptr ? made.panorama->panorama_share() : 0.0;
   const int ray_cast_lines = made.panorama != nullptr ? made.panorama->ray_cast_lines() : 0;
@@ -245,8 +249,8 @@ Status make_image(const ImageArguments& arguments) {
   const ultrasound::RasterGeometry raster = scanner.raster();
   std::optional<ColourPicture> colour;
   if (scan.flow)
-    colour = colour_picture(scan.flow, request.doppler, arguments.doppler.time_s, engine, echoes, scan.X_PT, picture,
-                            raster, arguments.scan.seed);
+    colour = colour_picture(scan.flow, request.doppler, arguments.doppler.time_s, engine, echoes, scan, picture, raster,
+                            arguments.scan.seed);
 
   Timing timing;
   if (arguments.frames > 0)
@@ -292,6 +296,7 @@ void add_ultrasound_image_command(Command& ultrasound, Action& action) {
       "  trocar ultrasound image --patient abdomen --pose probe.tfm --frames 300 --out frame.png\n");
   const auto a = std::make_shared<ImageArguments>();
   add_scan_options(command, a->scan);
+  add_breathing_options(command, a->scan.breathing, a->scan.phase);
   add_doppler_options(command, a->doppler);
   command.add_option("--persistence", a->scan.display.persistence, "Weight of the previous frame (persistence)")
       .number_within(0.0, 0.95, "")

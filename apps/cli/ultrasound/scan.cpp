@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "cases/prepare_case.h"
 #include "cli/patient_option.h"
 #include "config/json.h"
 #include "core/text.h"
@@ -209,6 +210,8 @@ Result<Scan> prepare_scan(const ScanArguments& a, const std::string& default_tra
 
   TROCAR_TRY(const anatomy::VirtualPatient patient, io::open_patient(a.source, progress));
   scan.patient_name = patient.name;
+  scan.motion = patient.motion;
+  TROCAR_TRY(scan.breathing, cases::breathing_of(patient, a.breathing, a.phase));
   if (scan.view) {
     TROCAR_TRY(scan.view, ultrasound::choose_view(patient, views, a.view));
     core::report(progress, "searching the pose of the transducer", 0.0);

@@ -8,6 +8,7 @@
 #include "cli/action.h"
 #include "cli/output.h"
 #include "io/patient/patient_cache.h"
+#include "motion/patient_motion.h"
 #include "ultrasound/doppler/vessel_flow.h"
 #include "ultrasound/engine/b_mode.h"
 #include "ultrasound/probe/probe_view.h"
@@ -29,6 +30,8 @@ struct ScanArguments {
   std::vector<std::string> off;
   std::uint64_t seed = 1;  ///< Seed of the receiver's noise.
   bool needs_flow = false;
+  std::string breathing;  ///< As the next one for cases::breathing_of().
+  std::optional<double> phase;
 };
 
 /// Adds the options; `arguments` must outlive the command.
@@ -44,6 +47,8 @@ struct Scan {
   std::optional<ultrasound::ViewVisibility> visibility;  ///< Visibility of the view's subject.
   double unscanned_share = 0.0;                          ///< Share of the image beyond the ends of the CT.
   std::string patient_name;
+  std::shared_ptr<const motion::MotionModel> motion;  ///< Of the patient; null: it does not move.
+  motion::MotionDrive breathing;
   std::shared_ptr<const ultrasound::AcousticScene> scene;
   std::shared_ptr<const ultrasound::VesselFlow> flow;  ///< Null unless needs_flow.
 };
@@ -52,6 +57,11 @@ struct Scan {
 /// arguments nor the view name a transducer.
 Result<Scan> prepare_scan(const ScanArguments& arguments, const std::string& default_transducer,
                           const Progress& progress);
+
+/// Where the patient of a scan is at a time.
+inline motion::PatientMotion motion_at(const Scan& scan, double time_s) noexcept {
+  return motion::MotionClock{scan.motion.get(), scan.breathing}.at(time_s);
+}
 
 /// Checks that outputs can be written: they do not exist, their folders exist, and all are different. Empty ones are
 /// ignored.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/breathing_option.h"
 #include "core/files/folders.h"
 #include "core/text.h"
 #include "io/markups_file.h"
@@ -67,6 +68,7 @@ Status check_reach(const XrayArguments& a, const xray::CArmPreset& unit, const x
 void add_xray_options(Command& command, XrayArguments& a) {
   command.add_option("--patient", a.source.folder_or_name, "Patient folder, or an embedded patient's name").required();
   command.add_option("--patient-seed", a.source.seed, "Seed of an embedded patient").seed().show_default();
+  add_breathing_options(command, a.breathing, a.phase);
   command.add_option("--carm", a.carm, "LAO,CRAN in degrees; RAO and caudal are negative").show_default();
   command.add_option(
       "--at", a.at,

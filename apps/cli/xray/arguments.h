@@ -13,6 +13,8 @@ namespace trocar::cli {
 /// Arguments of `trocar xray`, as written.
 struct XrayArguments {
   io::PatientSource source;
+  std::string breathing;  ///< As the next one for cases::breathing_of().
+  std::optional<double> phase;
   std::string unit = "angiography";
   std::string carm = "0,0";
   std::string at;  ///< Empty: the needle's tip, the injection, the target of the patient's task, or the body's centre.

@@ -37,6 +37,7 @@ constexpr double kPulses_per_s = 15.0;
 struct Room {
   std::shared_ptr<const anatomy::VirtualPatient> patient;
   std::optional<xray::Fluoroscope> fluoroscope;
+  motion::MotionDrive breathing;
   xray::FluoroscopyRequest request;
   std::optional<xray::ContrastFlow> flow;
   std::optional<Injection> injection;
@@ -147,6 +148,7 @@ Result<Room> prepare_room(const XrayArguments& a, const Progress& progress) {
   TROCAR_TRY(room.request.tools, read_tools(a.tools));
   TROCAR_TRY(anatomy::VirtualPatient patient, io::open_patient(a.source, progress));
   room.patient = std::make_shared<const anatomy::VirtualPatient>(std::move(patient));
+  TROCAR_TRY(room.breathing, cases::breathing_of(*room.patient, a.breathing, a.phase));
   if (a.at.empty()) room.request.arm.isocentre_P = middle_P(room, X_PN);
   if (X_PN) room.request.tools.push_back(needle_of(*X_PN, a.needle_mm));
   core::report(progress, "preparing the X-ray", 0.5);
@@ -198,6 +200,7 @@ Result<std::vector<xray::FluoroscopyFrame>> make_frames(Room& room, const XrayAr
       contrast_s = to_s;
     }
     room.request.time_s = n / kPulses_per_s;
+    room.request.motion = motion::MotionClock{room.patient->motion.get(), room.breathing}.at(room.request.time_s);
     TROCAR_TRY(auto frame, room.fluoroscope->frame(room.request, a.seed + static_cast<std::uint64_t>(n)));
     if (room.injection && (end_s > 0.0 || a.frames == 1)) frame.time_s = contrast_s;
     if (n >= before) frames.push_back(std::move(frame));

@@ -98,8 +98,10 @@ std::string hash_motion(const MotionParts& parts) {
   };
   const auto add_geometry = [&](const volume::GridGeometry& geometry) {
     add(geometry.size);
-    for (const Vec3& v : {geometry.spacing_mm, geometry.origin_P}) add(std::array{v.x(), v.y(), v.z()});
-    add(std::span(geometry.R_PV.data(), 9));
+    // Plus 0: files do not keep the sign of a zero.
+    for (const Vec3& v : {geometry.spacing_mm, geometry.origin_P})
+      add(std::array{v.x() + 0.0, v.y() + 0.0, v.z() + 0.0});
+    for (const double number : geometry.R_PV.reshaped()) add(std::array{number + 0.0});
   };
   for (const auto& names : {parts.drivers, parts.regions}) {
     add(std::array{static_cast<std::uint64_t>(names.size())});

@@ -122,6 +122,10 @@ Result<std::shared_ptr<const MotionModel>> MotionModel::make(MotionParts parts, 
 Result<std::shared_ptr<const MotionModel>> MotionModel::unchecked(MotionParts parts, const std::string& where) {
   TROCAR_TRY_STATUS(check_sizes(parts, where));
   TROCAR_TRY_STATUS(check_numbers(parts, where));
+  // Files do not keep the sign of a zero, which would give another hash.
+  for (std::vector<Vec3f>& mode : parts.modes)
+    for (Vec3f& moved_mm : mode) moved_mm.array() += 0.0F;
+  for (float& depth_mm : parts.border_mm.voxels) depth_mm += 0.0F;
   return std::shared_ptr<const MotionModel>(new MotionModel(std::move(parts)));
 }
 

@@ -9,6 +9,7 @@
 #include "core/files/folders.h"
 #include "core/files/output_file.h"
 #include "core/log.h"
+#include "motion/breathing_choice.h"
 #include "phantom/phantom.h"
 #include "tasks/assess_path.h"
 #include "tasks/fit_to_patient.h"
@@ -227,6 +228,20 @@ Result<anatomy::TissueTable> load_own_tissues(const std::string& patient_folder)
   return table;
 }
 
+Result<motion::MotionDrive> breathing_of(const anatomy::VirtualPatient& patient, const std::string& text,
+                                         const std::optional<double>& held_phase) {
+  if (text.empty() && !held_phase) return motion::MotionDrive();
+  TROCAR_TRY(const motion::BreathingChoice choice, motion::parse_breathing(text.empty() ? "quiet" : text));
+  if (choice.liver_mm == 0.0) return motion::MotionDrive();
+  if (patient.motion == nullptr)
+    return fail_usage("the patient has no breathing model", patient.name,
+                      "make one with trocar patient motion DIR, or let the patient rest: --breathing none");
+  TROCAR_TRY(motion::MotionDrive drive, motion::drive_of(choice, *patient.motion));
+  drive.is_held = held_phase.has_value();
+  drive.held_phase = held_phase.value_or(0.0);
+  return drive;
+}
+
 Result<Case> load_tables(const CaseOptions& options) {
   TROCAR_TRY(const std::filesystem::path data, checked_data_dir());
   Case made;
@@ -252,6 +267,7 @@ Result<Case> load_tables(const CaseOptions& options) {
 Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const CaseOptions& options,
                           const Progress& progress) {
   TROCAR_TRY(Case made, load_tables(options));
+  TROCAR_TRY(made.breathing, breathing_of(*patient, options.breathing, options.held_phase));
   made.task = tasks::fit_to_patient(std::move(made.task), *patient);
   const tasks::TaskReadiness readiness = tasks::check_task(made.task, *patient);
   if (!readiness.is_possible)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "anatomy/tissue/tissue_table.h"
 #include "core/progress.h"
 #include "core/result.h"
+#include "motion/breathing.h"
 #include "tasks/action.h"
 #include "tasks/needle.h"
 #include "tasks/plan.h"
@@ -29,6 +31,9 @@ struct CaseOptions {
   std::vector<std::string> overrides;  ///< "liver.k=0.5"
   std::string posture;                 ///< Posture of the patient; empty: tried in the order of tasks::postures_to_try.
   std::string level;                   ///< Name or number of a level of the task; empty: the task as it is.
+  /// How the patient breathes, as motion::parse_breathing() reads it; empty: not at all.
+  std::string breathing;
+  std::optional<double> held_phase = {};  ///< The patient is held at this phase of the breath, 0..1.
   std::uint64_t seed = 1;
 };
 
@@ -43,6 +48,8 @@ struct Case {
   tasks::PlannedPath plan;                  ///< The expert path that is shown.
   std::vector<tasks::PlannedPath> experts;  ///< The plan, then others; an attempt is compared with the nearest.
   bool is_parenchymal = false;
+  /// What moves the patient; begins_s: session time of an attempt without servers. Without any depth the patient rests.
+  motion::MotionDrive breathing = {};
   std::shared_ptr<const xray::DuctTree> ducts;  ///< Of a task that advances a guide wire; else null.
 
   /// `experts`; in a case made without them the plan alone.
@@ -56,6 +63,11 @@ Result<Case> load_tables(const CaseOptions& options);
 
 /// Source of an embedded patient with the body of a level: "biopsy-1@weight_kg=1.3".
 std::string with_body(const std::string& patient, const tasks::Tier& level);
+
+/// The drive of a patient who breathes as a text says (empty: not), held at a phase of the breath if there is one (then
+/// quietly, if the text is empty). Errors (exit status 2): not such a text, a patient without a motion model.
+Result<motion::MotionDrive> breathing_of(const anatomy::VirtualPatient& patient, const std::string& text,
+                                         const std::optional<double>& held_phase);
 
 /// The plan of a case and the other paths that the patient brings for its task. A biopsy needle has only its plan.
 std::vector<tasks::PlannedPath> find_experts(const Case& the_case, const anatomy::VirtualPatient& patient);

@@ -15,14 +15,20 @@ namespace trocar::attempt {
 namespace {
 
 link::LoadScene scene_of(const AttemptCase& the_case, const std::string& force_model, const AttemptIdentity& identity,
-                         const char* tool) {
+                         const motion::MotionDrive& breathing, const char* tool) {
   cases::SceneChoice choice;
   choice.tool = tool;
   choice.force_model = force_model;
   choice.patient_source = the_case.server_source;
   choice.patient_seed = identity.patient_seed;
   choice.seed = identity.seed;
-  return cases::scene_request(*the_case.the_case, choice);
+  link::LoadScene request = cases::scene_request(*the_case.the_case, choice);
+  request.motion = breathing;
+  return request;
+}
+
+double seconds(Clock::TimePoint time) noexcept {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
 }  // namespace
@@ -56,10 +62,13 @@ AttemptLoop::AttemptLoop(AttemptCase the_case, LoopOptions options, AttemptOpera
 }
 
 void AttemptLoop::prepare() {
+  breathing_ = case_.the_case->breathing;
+  breathing_.begins_s = seconds(clock_.now());
   if (!performer_.parameters.empty()) needle_.server->set_parameters(as_command(performer_.parameters.front()));
-  needle_.server->prepare({scene_of(case_, performer_.force_model, options_, "needle"), hand_target(command_, 0.0)});
+  needle_.server->prepare(
+      {scene_of(case_, performer_.force_model, options_, breathing_, "needle"), hand_target(command_, 0.0)});
   if (!transducer_.server) return;
-  PreparationRequest request{scene_of(case_, performer_.force_model, options_, "probe"), {}};
+  PreparationRequest request{scene_of(case_, performer_.force_model, options_, breathing_, "probe"), {}};
   request.place.X_PN = transducer_motion_->X_PT_start();
   request.scene.X_PW = transducer_room(request.scene.X_PW, transducer_motion_->X_PT_room());
   transducer_.server->prepare(request);
@@ -135,8 +144,21 @@ Status AttemptLoop::take_requests(Recording& recording, AttemptRequests& request
   return {};
 }
 
+/// Both servers get the drive that goes on where the old one is.
+void AttemptLoop::ask_patient(tasks::ActionKind action) {
+  const double now_s = seconds(clock_.now());
+  const motion::MotionDrive next = action == tasks::ActionKind::kHoldBreath ? motion::asked_to_hold(breathing_, now_s)
+                                                                            : motion::released(breathing_, now_s);
+  if (!motion::moves(breathing_) || next == breathing_) return;
+  breathing_ = next;
+  for (const LiveTool* tool : {&needle_, &transducer_})
+    if (tool->server) tool->server->set_parameters({.motion = breathing_});
+}
+
 Status AttemptLoop::act(Recording& recording, const tasks::ActionRequest& request) {
   TROCAR_TRY(const auto action, recording.record.act(request));
+  if (action && (action->kind == tasks::ActionKind::kHoldBreath || action->kind == tasks::ActionKind::kBreathe))
+    ask_patient(action->kind);
   if (!recording.watch) return {};
   recording.watch->take_actions();
   constexpr double kLess_mm = 0.5;

@@ -123,6 +123,7 @@ class AttemptLoop {
   Status step();
   Status take_requests();
   Status take_requests(Recording& recording, AttemptRequests& requests);
+  void ask_patient(tasks::ActionKind action);
   Status act(Recording& recording, const tasks::ActionRequest& request);
   bool is_needle_free() const;
   void lead(const AttemptRequests& requests);
@@ -169,6 +170,7 @@ class AttemptLoop {
   std::size_t next_parameters_ = 1;  ///< Index into the performer's parameters; the first ones are part of the scene.
   telemetry::NeedleShape needle_shape_;  ///< The newest one.
   double pressed_mm_ = 0.0;              ///< Largest of this insertion, see note_place.
+  motion::MotionDrive breathing_;        ///< What moves the patient, in the time of clock_.
   motion::MotionDrive drive_;            ///< Of the needle's newest scene, drive_scene_.
   std::uint64_t drive_scene_ = 0;
 

@@ -77,7 +77,7 @@ Result<SceneSchedule> SceneSchedule::make(const cases::Case& the_case, const Per
                                           const RunOptions& options, const stylus::DevicePreset& device) {
   haptics::HapticOptions haptics;
   haptics.seed = options.seed;
-  haptics.motion = options.motion;
+  haptics.motion = the_case.breathing;
   haptics::apply_device_preset(device, haptics);
   SceneSchedule schedule;
   if (performer.parameters.empty()) {
@@ -134,9 +134,9 @@ class RecordedTicks {
     return tool.is_valid() ? tool : telemetry::to_tool_pose(telemetry::device_pose(sample));
   }
   /// Where the patient is: as its clock says, or as recorded.
-  motion::PatientMotion motion(std::size_t tick, const haptics::HapticScene& scene) const noexcept {
-    if (session_ == nullptr || session_->samples.empty()) return scene.motion_at(time_s(tick));
-    return haptics::recorded_motion(scene.patient->motion.get(), scene.options.motion,
+  motion::PatientMotion motion(std::size_t tick, const motion::MotionClock& clock) const noexcept {
+    if (session_ == nullptr || session_->samples.empty()) return clock.at(time_s(tick));
+    return haptics::recorded_motion(clock.model, clock.drive,
                                     session_->samples[std::min(tick, session_->samples.size() - 1)]);
   }
   /// The interruption that ends at the tick; null: none.
@@ -169,6 +169,12 @@ class RecordedTicks {
   std::size_t transducer_ = 0, xray_ = 0;  ///< Numbers of appended rows.
 };
 
+/// What moves the patient after an operator's action.
+motion::MotionDrive asked(const motion::MotionDrive& drive, tasks::ActionKind action, double time_s) noexcept {
+  if (action == tasks::ActionKind::kHoldBreath) return motion::asked_to_hold(drive, time_s);
+  return action == tasks::ActionKind::kBreathe ? motion::released(drive, time_s) : drive;
+}
+
 /// The closed loop, until the operator has finished. Returns the number of ticks.
 Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, double mass_kg, AttemptRecord& record,
                             const Progress& progress) {
@@ -178,6 +184,8 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
   stylus::VirtualDeviceState device;
   haptics::HapticState state;
   tasks::OperatorView view;
+  const haptics::HapticScene& begin = *scenes.first().scene;
+  motion::MotionClock clock{begin.patient->motion.get(), begin.options.motion};
   constexpr double kShapeEvery_s = 0.01;  // as a server
   double next_shape_s = 0.0;
   for (std::size_t i = 0; i < most_ticks; ++i) {
@@ -189,6 +197,7 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     const SceneSchedule::Entry& now = scenes.at(i);
     const haptics::HapticScene& scene = *now.scene;
     if (i == 0) device.X_PN = command.X_PN;
+    if (command.action) clock.drive = asked(clock.drive, command.action->kind, view.time_s);
     const bool is_another_model = before != nullptr && before->scene->options.force_model != scene.options.force_model;
     if (is_another_model) state = {};  // as in a server: the insertion restarts
     move_device(device, mass_kg, command, state.last.device_f_n, scene, view.dt_s);
@@ -198,8 +207,8 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     }
 
     const telemetry::ToolPose tool = recorded.tool(i).value_or(telemetry::to_tool_pose(device.X_PN));
-    const haptics::HapticOutput output =
-        tick(state, {view.time_s, view.dt_s, tool, true, recorded.motion(i, scene)}, scene);
+    const motion::PatientMotion motion = recorded.motion(i, clock);
+    const haptics::HapticOutput output = tick(state, {view.time_s, view.dt_s, tool, true, motion}, scene);
     view.X_PN_device = device.X_PN;
     view.last = output.sample;
     record.note(command);
@@ -207,7 +216,7 @@ Result<std::size_t> perform(const Performer& performer, SceneSchedule& scenes, d
     view.returned = tasks::last_return(record.actions());
     TROCAR_TRY_STATUS(recorded.append_others(view.time_s, record));
     if (view.time_s >= next_shape_s) {
-      telemetry::NeedleShape shape = haptics::needle_shape(state.needle, scene, true);
+      telemetry::NeedleShape shape = haptics::needle_shape(state.needle, {scene, motion}, true);
       shape.time_s = view.time_s;
       next_shape_s = view.time_s + kShapeEvery_s;
       TROCAR_TRY_STATUS(record.append(shape));

@@ -22,7 +22,6 @@ struct RunOptions : AttemptIdentity {
   std::string force_model;  ///< insertion | proxy | combined; empty: the task's, or that of the replayed session.
   std::string device = "premium";  ///< Name in data/devices.toml; its limits and coupling are simulated.
   double rate_hz = 1000.0;         ///< 250..4000. A replay uses its session's rate.
-  motion::MotionDrive motion;      ///< Of a patient with a motion model, in session time. A replay uses its session's.
   std::filesystem::path session;   ///< Written here; must not exist.
   // Replay only. It uses seeds, rate and device of its session; the values above are ignored.
   std::shared_ptr<const storage::Session> replayed;  ///< Session of the operator's name, if it is already loaded.

@@ -86,7 +86,7 @@ Status ServerSupervisor::step_preparation() {
       return step_connecting();
     case ServerState::kIdle:
       if (!request_) return {};
-      asked_ = connection_->send(request_->scene);
+      asked_ = send(request_->scene);
       enter(ServerState::kLoading);
       return {};
     case ServerState::kLoading:
@@ -161,7 +161,12 @@ Status ServerSupervisor::step_loading() {
   return {};
 }
 
-/// Times of this program's clock become those of the server's.
+/// Times of this program's clock become those of the server's, here and in the next one.
+std::uint32_t ServerSupervisor::send(link::LoadScene message) {
+  message.motion.begins_s += client_.clock_offset_s;
+  return connection_->send(message);
+}
+
 std::uint32_t ServerSupervisor::send(link::SetParameters message) {
   if (message.motion) message.motion->begins_s += client_.clock_offset_s;
   return connection_->send(message);

@@ -145,6 +145,7 @@ class ServerSupervisor {
   Status wait_for_control();
   Status reset_fault();
   Status step_loading();
+  std::uint32_t send(link::LoadScene message);
   std::uint32_t send(link::SetParameters message);
   void adjust();
   void step_adjusting();
