@@ -6,7 +6,7 @@
 # Sources of `io` and `cases` that the haptic server links: batches of their own, so that it gets no writers and no sessions with
 # them (tests/cli/server_program_test.cpp).
 set(trocar_server_sources
-  "/(volume_file|raw_volume|payload|(image|text|nrrd)_header|nifti|markups_file|patient_(folder|toml)|prepare_case|scene_request)[.]cpp$")
+  "/(volume_file|raw_volume|payload|(image|text|nrrd)_header|nifti|markups_file|motion_files|patient_(folder|toml)|prepare_case|scene_request)[.]cpp$")
 
 # list(FILTER), by the path below the source folder: the checkout may lie in a folder named test.
 function(trocar_filter list mode regex)

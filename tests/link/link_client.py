@@ -175,7 +175,8 @@ def load_scene(patient, x_pw, **fields):
     scene.patient, scene.patientSeed, scene.tool, scene.needle = patient, 1, "needle", needle
     scene.forceModel, scene.seed, scene.xPw = "insertion", 1, x_pw
     motion = wire.MotionDrive.MotionDriveT()
-    motion.periodS, motion.beginsS, motion.heldPhase, motion.depth, motion.isHeld = 4.0, 0.0, 0.0, [0.0] * 4, False
+    motion.periodS, motion.depth, motion.firstDepth = 4.0, [0.0] * 2, 1.0
+    motion.holdS, motion.releaseS, motion.holdLimitS = -1.0, -1.0, 20.0
     scene.motion = motion
     for name, value in fields.items():
         setattr(scene, name, value)

@@ -69,6 +69,11 @@ struct LayerLaw {
   double pressed_young_kpa = 0.0;  ///< Least Young's modulus of that tissue.
 };
 
+/// Where a patient is at a time; at rest, in phase 0, without a model or if nothing drives it. Real-time safe.
+inline motion::PatientMotion motion_of(const motion::MotionClock& clock, double time_s) noexcept {
+  return clock.model != nullptr && motion::moves(clock.drive) ? clock.at(time_s) : motion::PatientMotion();
+}
+
 /// Constant data of the tick. Built off-line, shared, read by many threads.
 struct HapticScene {
   std::shared_ptr<const anatomy::VirtualPatient> patient;
@@ -97,8 +102,7 @@ struct HapticScene {
   /// Where the patient is at a time of the ticks; at rest without a motion model or if nothing drives it.
   /// Real-time safe.
   motion::PatientMotion motion_at(double time_s) const noexcept {
-    const motion::MotionModel* const model = patient != nullptr ? patient->motion.get() : nullptr;
-    return motion::MotionClock{model, options.motion}.at(time_s);
+    return motion_of({patient != nullptr ? patient->motion.get() : nullptr, options.motion}, time_s);
   }
 };
 

@@ -16,6 +16,7 @@
 #include "io/patient/patient_extras.h"
 #include "io/patient/patient_folder.h"
 #include "io/sequence/transform_file.h"
+#include "motion/motion_file.h"
 
 namespace trocar::io {
 namespace fs = std::filesystem;
@@ -120,6 +121,23 @@ Status save_patient(const anatomy::VirtualPatient& patient, const std::vector<an
     if (ultrasound != nullptr) TROCAR_TRY_STATUS(write_ultrasound(*ultrasound, temporary));
     return {};
   });
+}
+
+/// Here and not beside its reader: haptic servers contain no writers.
+Status save_motion_model(const motion::MotionModel& model, const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(folder / detail::kMotionFile, ignored);
+  const motion::MotionParts& parts = model.parts();
+  Status border;
+  Status modes;
+  parallel_invoke([&] { modes = write_image(motion::stack_modes(parts), folder / detail::kMotionModesFile); },
+                  [&] {
+                    if (!parts.border_mm.empty())
+                      border = write_image(parts.border_mm, folder / detail::kMotionBorderFile);
+                  });
+  TROCAR_TRY_STATUS(modes);
+  TROCAR_TRY_STATUS(border);
+  return write_file_atomically(folder / detail::kMotionFile, motion::to_toml(model));
 }
 
 Status add_patient_meshes(const fs::path& folder, const std::vector<anatomy::NamedMesh>& meshes) {

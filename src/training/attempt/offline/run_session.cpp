@@ -135,7 +135,7 @@ class RecordedTicks {
   }
   /// Where the patient is: as its clock says, or as recorded.
   motion::PatientMotion motion(std::size_t tick, const motion::MotionClock& clock) const noexcept {
-    if (session_ == nullptr || session_->samples.empty()) return clock.at(time_s(tick));
+    if (session_ == nullptr || session_->samples.empty()) return haptics::motion_of(clock, time_s(tick));
     return haptics::recorded_motion(clock.model, clock.drive,
                                     session_->samples[std::min(tick, session_->samples.size() - 1)]);
   }

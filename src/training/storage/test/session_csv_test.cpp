@@ -25,7 +25,7 @@ constexpr const char* kHeader =
     "limited,breathing,f_tip_proxy_x_n,f_tip_proxy_y_n,f_tip_proxy_z_n,f_body_axial_n,f_stick_n,device_x_mm,"
     "device_y_mm,device_z_mm,device_f_x_n,device_f_y_n,device_f_z_n,device_tau_x_nmm,device_tau_y_nmm,device_tau_z_nmm,"
     "gate_mode,gate_fault,gate_scale,coupling_share,rest_tip_x_mm,rest_tip_y_mm,rest_tip_z_mm,rest_axis_x,rest_axis_y,"
-    "rest_axis_z";
+    "rest_axis_z,breath_held";
 
 Session example_session(std::size_t ticks) {
   Session session;

@@ -40,6 +40,10 @@ inline constexpr const char* kLabelFile = "labels.nrrd";
 inline constexpr const char* kDistanceFile = "skin_distance.nrrd";
 inline constexpr const char* kLandmarkFile = "landmarks.mrk.json";
 inline constexpr const char* kPathFile = "paths.mrk.json";
+// Of a motion model, all or none.
+inline constexpr const char* kMotionFile = "motion.toml";
+inline constexpr const char* kMotionModesFile = "motion_modes.nrrd";
+inline constexpr const char* kMotionBorderFile = "motion_border.nrrd";
 
 inline constexpr const char* kBuildAgain = "build the patient again";
 
