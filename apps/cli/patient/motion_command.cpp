@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "anatomy/label_statistics.h"
 #include "anatomy/patient.h"
 #include "cli/commands.h"
 #include "cli/output.h"
@@ -60,17 +61,11 @@ Status bring_up_to_date(const MotionArguments& arguments, anatomy::VirtualPatien
 
 /// The middle of the liver, or of the volume.
 Vec3 middle_of(const anatomy::VirtualPatient& patient) {
-  const volume::GridGeometry& grid = patient.labels.geometry;
-  Vec3 sum = Vec3::Zero();
-  double count = 0.0;
-  constexpr std::size_t kStride = 13;
   const anatomy::Label* const liver = patient.label_table.find("liver");
-  for (std::size_t n = 0; liver != nullptr && n < patient.labels.voxels.size(); n += kStride) {
-    if (patient.labels.voxels[n] != liver->id) continue;
-    sum += grid.centre_mm(grid.index_of(n));
-    count += 1.0;
-  }
-  return count > 0.0 ? Vec3(sum / count) : grid.to_mm(0.5 * volume::to_vec3(grid.size));
+  for (const anatomy::LabelStatistics& row : anatomy::label_statistics(patient))
+    if (liver != nullptr && row.id == liver->id && row.voxels > 0) return row.centroid_P;
+  const volume::GridGeometry& grid = patient.labels.geometry;
+  return grid.to_mm(0.5 * volume::to_vec3(grid.size));
 }
 
 Status draw(const anatomy::VirtualPatient& patient, const fs::path& file) {
@@ -116,7 +111,19 @@ void print(const anatomy::VirtualPatient& patient, const std::vector<StructureMo
   }
 }
 
+/// Before any work: the name of a new PNG in a folder that exists.
+Status check_picture(const fs::path& file) {
+  if (file.empty()) return {};
+  if (file.extension() != ".png")
+    return fail_usage("the picture is a PNG", file.string(), "give a name that ends in .png");
+  std::error_code ignored;
+  if (file.has_parent_path() && !fs::is_directory(file.parent_path(), ignored))
+    return fail_usage("the folder does not exist", file.parent_path().string(), "create it first");
+  return check_new(file, "--show");
+}
+
 Status show_motion(const MotionArguments& arguments) {
+  TROCAR_TRY_STATUS(check_picture(arguments.show));
   const bool is_made_again = arguments.is_forced && io::is_path(arguments.source.folder_or_name);
   TROCAR_TRY(anatomy::VirtualPatient patient,
              is_made_again ? io::load_anatomy(arguments.source.folder_or_name) : io::load_source(arguments.source));

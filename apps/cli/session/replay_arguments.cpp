@@ -21,6 +21,8 @@ Status check_contradictions(const NamedOptions& named, const cases::CaseOptions&
   TROCAR_TRY_STATUS(check_same(named, kTask, the_case.task, info.task));
   TROCAR_TRY_STATUS(check_same(named, "--needle", the_case.needle, info.needle));
   if (named.has("--level")) return fail_usage("a replay has the level of its session", "--level", "omit it");
+  for (const char* const option : {"--breathing", "--phase"})
+    if (named.has(option)) return fail_usage("in a replay the patient breathes as in its session", option, "omit it");
   TROCAR_TRY_STATUS(check_same(named, "--seed", run.seed, info.seed));
   TROCAR_TRY_STATUS(check_same(named, "--rate", run.rate_hz, info.rate_hz));
   const std::string preset = attempt::recorded_preset(info);

@@ -146,7 +146,7 @@ bool operator==(const CaseChoice& a, const CaseChoice& b) {
   const CaseOptions &x = a.options, &y = b.options;
   return is_same_patient(a, b) && a.force_model == b.force_model && x.task == y.task && x.needle == y.needle &&
          x.tissue_file == y.tissue_file && x.profile == y.profile && x.overrides == y.overrides && x.level == y.level &&
-         x.seed == y.seed;
+         x.breathing == y.breathing && x.held_phase == y.held_phase && x.seed == y.seed;
 }
 
 Result<std::shared_ptr<const OpenCase>> make_open_case(const CaseChoice& choice, const OpenOptions& options,

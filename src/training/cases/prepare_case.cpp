@@ -232,6 +232,8 @@ Result<motion::MotionDrive> breathing_of(const anatomy::VirtualPatient& patient,
                                          const std::optional<double>& held_phase) {
   if (text.empty() && !held_phase) return motion::MotionDrive();
   TROCAR_TRY(const motion::BreathingChoice choice, motion::parse_breathing(text.empty() ? "quiet" : text));
+  if (choice.liver_mm == 0.0 && held_phase)
+    return fail_usage("a patient who does not breathe has no phase", "--phase", "choose a breath with --breathing");
   if (choice.liver_mm == 0.0) return motion::MotionDrive();
   if (patient.motion == nullptr)
     return fail_usage("the patient has no breathing model", patient.name,

@@ -20,6 +20,7 @@
 #include "io/ct_series/dicom_folder.h"
 #include "io/image/image_file.h"
 #include "io/patient/label_sources.h"
+#include "io/patient/patient_folder.h"
 #include "motion_builder/breathing_model.h"
 #include "patient_builder/build_patient.h"
 #include "patient_builder/derive/derive_structures.h"
@@ -140,6 +141,7 @@ Result<anatomy::VirtualPatient> build_from_files(const PatientFiles& files, std:
   TROCAR_TRY_STATUS(mirror(files.mirroring, ct, sources, options.provenance));
   TROCAR_TRY(anatomy::VirtualPatient patient, patient_builder::build_patient(std::move(ct), std::move(sources), options,
                                                                              warnings, part_of(progress, 0.4, 0.9)));
+  round_as_saved(patient);  // from the saved patient, the same model can be made again
   motion_builder::add_breathing_model(patient, part_of(progress, 0.9, 1.0));
   return patient;
 }
