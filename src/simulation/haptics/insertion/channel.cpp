@@ -41,22 +41,49 @@ void Channel::forget_bins_from(int bin, const HapticScene& scene) noexcept {
   }
 }
 
-ChannelNow::ChannelNow(const Channel& channel, const motion::PatientMotion& motion) noexcept
-    : channel_(channel), motion_(motion), end_P_(channel.origin_P), onward_P_(channel.direction_P) {
-  if (channel.nodes.count == 0) return;
-  const Vec3& last_A = channel.nodes.p_A[static_cast<std::size_t>(channel.nodes.count - 1)];
-  end_P_ = motion.to_now(last_A);
-  onward_P_ = motion.line_to_now(last_A, channel.nodes.onward_A).normalized();
+ChannelLine needle_line(const Channel& channel, const motion::PatientMotion& motion, double tip_mm,
+                        double ahead_s) noexcept {
+  constexpr double kStiff_mm = 20.0;  // length (4 EI/k)^(1/4) of a needle of 22 G in a bed of 0.05 N/mm² [assumed]
+  constexpr double kGuide_mm = 10.0;  // so far before the tip its old hole guides the needle [assumed]
+  constexpr int kEvery = 2;           // nodes
+  const ChannelNodes& nodes = channel.nodes;
+  double w = 0.0, wx = 0.0, wxx = 0.0;  // x: s from the tip
+  Vec3 wp = Vec3::Zero(), wxp = Vec3::Zero();
+  const auto add = [&](int node) {
+    const double x = ChannelNodes::kNode_mm * node - tip_mm;
+    const double weight = std::exp(-std::abs(x) / kStiff_mm) * std::clamp(1.0 - x / kGuide_mm, 0.0, 1.0);
+    if (!(weight > 0.0)) return;
+    const Vec3& p_A = nodes.p_A[static_cast<std::size_t>(node)];
+    Vec3 p_P = motion.to_now(p_A);
+    if (ahead_s != 0.0) p_P += ahead_s * motion.velocity(p_A);
+    w += weight;
+    wx += weight * x;
+    wxx += weight * x * x;
+    wp += weight * p_P;
+    wxp += weight * x * p_P;
+  };
+  const int every = nodes.count > kEvery * kEvery ? kEvery : 1;
+  for (int node = 0; node < nodes.count; node += every) add(node);
+  constexpr double kOnePlace_mm2 = 1.0;
+  const double spread = w * wxx - wx * wx;
+  if (spread > kOnePlace_mm2 * w * w) {
+    const Vec3 slope_P = (w * wxp - wx * wp) / spread;
+    const Vec3 direction_P = slope_P.normalized();
+    return {(wp - wx * slope_P) / w - tip_mm * direction_P, direction_P};
+  }
+  const Vec3& first_A = nodes.p_A[0];
+  const Vec3 direction_P = motion.line_to_now(first_A, nodes.onward_A).normalized();
+  return {motion.to_now(first_A) + ahead_s * motion.velocity(first_A), direction_P};
 }
 
 Vec3 ChannelNow::node_tangent_P(int node) const noexcept {
-  if (node + 1 >= channel_.nodes.count) return onward_P_;
+  if (node + 1 >= channel_.nodes.count) return channel_.direction_P;
   return (node_P(node + 1) - node_P(std::max(0, node - 1))).normalized();
 }
 
 Vec3 ChannelNow::point_P(double s_mm) const noexcept {
-  if (channel_.nodes.count == 0) return channel_.origin_P + s_mm * channel_.direction_P;
-  if (s_mm >= channel_.nodes.end_mm()) return end_P_ + (s_mm - channel_.nodes.end_mm()) * onward_P_;
+  if (channel_.nodes.count == 0 || s_mm >= channel_.nodes.end_mm())
+    return channel_.origin_P + s_mm * channel_.direction_P;
   return motion_.to_now(rest_A(s_mm));
 }
 
@@ -87,14 +114,10 @@ void begin_nodes(Channel& channel, const motion::PatientMotion& motion) noexcept
 void extend_nodes(Channel& channel, const motion::PatientMotion& motion) noexcept {
   ChannelNodes& nodes = channel.nodes;
   if (nodes.count == 0 || channel.cut_to_mm < nodes.end_mm() + ChannelNodes::kNode_mm) return;
-  const ChannelNow course(channel, motion);
-  const double from_mm = nodes.end_mm();
-  const Vec3 onward_P = course.tangent_P(from_mm);
   while (nodes.count < ChannelNodes::kMost && channel.cut_to_mm >= nodes.end_mm() + ChannelNodes::kNode_mm) {
-    // Straight now: a needle cuts where it points.
-    const Vec3 p_P = course.point_P(from_mm) + (nodes.end_mm() + ChannelNodes::kNode_mm - from_mm) * onward_P;
+    // A needle cuts where it points.
+    const Vec3 p_P = channel.origin_P + (nodes.end_mm() + ChannelNodes::kNode_mm) * channel.direction_P;
     nodes.p_A[static_cast<std::size_t>(nodes.count)] = motion.to_rest(p_P);
-    nodes.onward_A = motion.line_to_rest(nodes.p_A[static_cast<std::size_t>(nodes.count)], onward_P);
     ++nodes.count;
   }
 }
@@ -102,9 +125,10 @@ void extend_nodes(Channel& channel, const motion::PatientMotion& motion) noexcep
 void carry(Channel& channel, const PatientNow& now, double tip_mm) noexcept {
   if (channel.nodes.count == 0) return;
   constexpr double kMoved_mm = 0.5 * Channel::kBin_mm;
+  const ChannelLine line = needle_line(channel, now.motion, tip_mm);
+  channel.origin_P = line.origin_P;
+  channel.direction_P = line.direction_P;
   const ChannelNow course(channel, now.motion);
-  channel.direction_P = course.tangent_P(tip_mm);
-  channel.origin_P = course.point_P(tip_mm) - tip_mm * channel.direction_P;
   const int cut = bin_of(channel.cut_to_mm) + 1;
   if (channel.known_bins <= cut) return;
   for (std::size_t i = 0; i < channel.nodes.seen_mm.size(); ++i) {
@@ -165,9 +189,9 @@ const Channel* ChannelMemory::find(const Vec3& entry_P, const Vec3& axis_P,
                                    const motion::PatientMotion& motion) const noexcept {
   for (const Channel& channel : channels) {
     if (!channel.is_used) continue;
-    const ChannelNow course(channel, motion);
-    if ((course.point_P(0.0) - entry_P).norm() < kSameHole_mm &&
-        angle_between_rad(course.tangent_P(0.0), axis_P) < kSameHole_rad)
+    const ChannelLine line = channel.nodes.count == 0 ? ChannelLine{channel.origin_P, channel.direction_P}
+                                                      : needle_line(channel, motion, 0.0);
+    if ((line.origin_P - entry_P).norm() < kSameHole_mm && angle_between_rad(line.direction_P, axis_P) < kSameHole_rad)
       return &channel;
   }
   return nullptr;

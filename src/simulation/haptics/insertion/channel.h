@@ -15,7 +15,7 @@ struct ChannelNodes {
 
   int count = 0;  ///< 0: the patient has no motion, the channel is its line.
   std::array<Vec3, kMost> p_A = zero_vectors<kMost>();
-  Vec3 onward_A = Vec3::UnitZ();  ///< Change per mm of s behind the last node.
+  Vec3 onward_A = Vec3::UnitZ();  ///< Change per mm of s at the first node, as it was cut.
   /// Where the known bins ended when they were filled, and half way there from the cut: if tissue there moves against
   /// the needle's line, they are filled again.
   std::array<double, 2> seen_mm{};
@@ -32,7 +32,7 @@ struct Channel {
   static constexpr int kBins = 3000;  ///< 300 mm, the longest needle.
 
   bool is_used = false;
-  /// The channel's line now: the whole of it at rest, its tangent at the tip where the patient moves (carry).
+  /// The channel's line now: the whole of it at rest; where the patient moves, that of the needle in it (carry).
   Vec3 origin_P = Vec3::Zero();      ///< s = 0 on that line; at rest where it meets the skin.
   Vec3 direction_P = Vec3::UnitZ();  ///< u, unit.
   ChannelNodes nodes;
@@ -59,12 +59,26 @@ struct Channel {
   void pierce(std::uint8_t layer) noexcept { pierced |= 1U << layer; }
 };
 
-/// The course of a channel at one moment. Real-time safe.
+/// Line on which tissue holds a needle that hardly bends: s = 0 and unit direction into the body.
+struct ChannelLine {
+  Vec3 origin_P = Vec3::Zero();
+  Vec3 direction_P = Vec3::UnitZ();
+
+  Vec3 at(double s_mm) const noexcept { return origin_P + s_mm * direction_P; }
+};
+/// Where the patient moves: the line through the channel's tissue around the needle's tip, `ahead_s` later with the
+/// tissue's velocity (physics.md S2). It changes smoothly, also where the tip passes from tissue to other tissue that
+/// slides along it. The channel has nodes. Real-time safe.
+ChannelLine needle_line(const Channel& channel, const motion::PatientMotion& motion, double tip_mm,
+                        double ahead_s = 0.0) noexcept;
+
+/// The course of a channel at one moment, behind the last node along its line. Real-time safe.
 class ChannelNow {
  public:
-  ChannelNow(const Channel& channel, const motion::PatientMotion& motion) noexcept;
+  ChannelNow(const Channel& channel, const motion::PatientMotion& motion) noexcept
+      : channel_(channel), motion_(motion) {}
 
-  Vec3 point_P(double s_mm) const noexcept;    ///< Point of the channel; behind the last node along its tangent there.
+  Vec3 point_P(double s_mm) const noexcept;    ///< Point of the channel.
   Vec3 tangent_P(double s_mm) const noexcept;  ///< Unit, into the body.
   Vec3 rest_A(double s_mm) const noexcept;     ///< The tissue at that point, at rest.
 
@@ -74,13 +88,12 @@ class ChannelNow {
 
   const Channel& channel_;
   const motion::PatientMotion& motion_;
-  Vec3 end_P_, onward_P_;  ///< The last node, and the unit tangent there.
 };
 
 /// Where the patient moves: gives a channel that has just opened its first node. Real-time safe.
 void begin_nodes(Channel& channel, const motion::PatientMotion& motion) noexcept;
-/// Where the patient moves: sets the channel's line to its tangent now at `tip_mm`, and forgets what it knows of tissue
-/// in front of the cut that has moved against it. Real-time safe.
+/// Where the patient moves: sets the channel's line to the needle's with its tip at `tip_mm`, and forgets what it knows
+/// of tissue in front of the cut that has moved against it. Real-time safe.
 void carry(Channel& channel, const PatientNow& now, double tip_mm) noexcept;
 /// Where the patient moves: adds nodes up to the deepest cut. Real-time safe.
 void extend_nodes(Channel& channel, const motion::PatientMotion& motion) noexcept;

@@ -57,18 +57,13 @@ NeedleAtPath at_path(const HapticScene& scene, const Pose& X_PN) noexcept {
   return {X_PN.p() - scene.needle.length_mm * axis_P, axis_P, scene.needle.length_mm};
 }
 
-/// Line to which paper A holds a needle, which does not bend: the channel's; where the patient moves, from its skin to
-/// its tip, `ahead_s` ahead in time.
+/// Line to which paper A holds a needle, which does not bend: the channel's, `ahead_s` ahead in time where the patient
+/// moves.
 PathLine path_line(const InsertionPath& path, const PatientNow& now, double ahead_s) noexcept {
   const Channel& channel = path.channel;
   if (channel.nodes.count == 0) return {channel.origin_P, channel.direction_P};
-  constexpr double kShortest_mm = 20.0;  // a short chord would turn with the tip
-  const ChannelNow course(channel, now.motion);
-  const auto at = [&](double s_mm) -> Vec3 {
-    return course.point_P(s_mm) + ahead_s * now.motion.velocity(course.rest_A(s_mm));
-  };
-  const Vec3 origin_P = at(0.0);
-  return {origin_P, (at(std::max(kShortest_mm, path.rest_mm)) - origin_P).normalized()};
+  const ChannelLine line = needle_line(channel, now.motion, path.rest_mm, ahead_s);
+  return {line.origin_P, line.direction_P};
 }
 
 /// Paper A: path constraint after the skin puncture, about S.
