@@ -387,7 +387,7 @@ void AttemptControl::show_tools(double dt_s) {
 }
 
 double AttemptControl::distance_mm() const {
-  return (view_.needle.X_PN.p() - open_->the_case.plan.line_P.b).norm();
+  return (view_.needle.X_PN.p() - view_.motion.to_now(open_->the_case.plan.line_P.b)).norm();
 }
 
 /// Why contrast agent cannot be injected now; empty: it can.

@@ -18,6 +18,7 @@ void AttemptControl::add_step_facts(QVariantMap& facts) const {
   facts[QStringLiteral("step_lacks")] = has_step ? to_qt(view_.phases[*view_.current_phase].lacks) : QString();
   facts[QStringLiteral("is_stylet_drawn")] = view_.is_stylet_drawn;
   facts[QStringLiteral("is_breath_held")] = view_.is_breath_held;
+  facts[QStringLiteral("patient_holds")] = view_.motion.state().is_breath_held;
   facts[QStringLiteral("wire_mm")] = wire_mm();
 }
 
@@ -26,7 +27,8 @@ QVariantMap AttemptControl::solution_facts() const {
   QVariantMap facts;
   facts[QStringLiteral("depth_mm")] = view_.needle.depth_mm;
   facts[QStringLiteral("distance_mm")] = distance_mm();
-  facts[QStringLiteral("entry_from_plan_mm")] = (needle_.entry_P() - open_->the_case.plan.line_P.a).norm();
+  facts[QStringLiteral("entry_from_plan_mm")] =
+      (needle_.entry_P() - view_.motion.to_now(open_->the_case.plan.line_P.a)).norm();
   facts[QStringLiteral("probe_from_plan_mm")] = (view_.probe.X_PT.p() - open_->X_PT_start.p()).norm();
   facts[QStringLiteral("tissue")] = to_qt(view_.needle.tissue);
   facts[QStringLiteral("core_target_mm")] = view_.shot ? view_.shot->core.target_mm : 0.0;

@@ -225,7 +225,7 @@ void ReplayControl::show_at(double time_s, bool is_moving) {
   tools.motion = replay_.motion_at(time_s);
   tools.shaft_P = replay_.shaft_at(time_s);
   tools.X_PN = telemetry::felt_needle(sample);
-  tools.focus_P = sample.depth_mm > 0.0 ? sample.tip_mm : open_->the_case.plan.line_P.b;
+  tools.focus_P = sample.depth_mm > 0.0 ? sample.tip_mm : tools.motion.to_now(open_->the_case.plan.line_P.b);
   tools.X_PT = transducer_at(time_s);
   tools.are_moving = is_moving;
   if (const attempt::GunShot* const shot = replay_.shot_at(time_s))

@@ -154,7 +154,7 @@ Status check(const MotionDrive& drive) {
       (drive.cough_every_s == 0.0 || is_within(drive.cough_every_s, kLeastCough_s, kMostCough_s)) &&
       is_within(drive.hold_s, -kMostTime_s, kMostTime_s) && is_within(drive.release_s, -kMostTime_s, kMostTime_s) &&
       is_within(drive.first_depth, 0.3, 2.0) && is_within(drive.drifted, -1.0, 1.0) &&
-      is_within(drive.hold_limit_s, 1.0, kMostLimit_s) &&
+      is_within(drive.hold_limit_s, 0.0, kMostLimit_s) &&
       is_within(drive.drift_per_s, -kMostDrift_per_s, kMostDrift_per_s);
   if (is_good) return {};
   return fail("a number is out of its range", "motion of the patient",
@@ -162,7 +162,7 @@ Status check(const MotionDrive& drive) {
 }
 
 double hold_begins_s(const MotionDrive& drive) noexcept {
-  if (!(drive.hold_s >= 0.0)) return MotionDrive::kNever_s;
+  if (!(drive.hold_s >= 0.0) || drive.hold_limit_s <= 0.0) return MotionDrive::kNever_s;
   const auto moment = static_cast<std::int64_t>(1e3 * drive.hold_s);
   const double share = 0.5 * (1.0 + draw(drive.seed, Draw::kReaction, moment));
   const double reacts_s = drive.hold_s + kFastestReaction_s + share * (kSlowestReaction_s - kFastestReaction_s);

@@ -28,7 +28,7 @@ struct MotionDrive {
 
   double hold_s = kNever_s;     ///< The patient is asked to hold the breath; negative: is not.
   double release_s = kNever_s;  ///< The patient may breathe again; negative: not yet.
-  double hold_limit_s = 20.0;   ///< The patient holds it for no longer. Range 1..120. [assumed]
+  double hold_limit_s = 20.0;   ///< The patient holds it for no longer; 0: not at all. Range 0..120. [assumed]
   double drift_per_s = 0.0;     ///< By which the first driver drifts while the breath is held. Range -0.1..0.1.
 
   bool operator==(const MotionDrive&) const = default;

@@ -22,7 +22,7 @@ struct Field {
 constexpr std::array<Field, 4> kFields{{{"rate", 4.0, 40.0, &BreathingChoice::breaths_per_min},
                                         {"irregularity", 0.0, 0.4, &BreathingChoice::irregularity},
                                         {"cough", 5.0, 3600.0, &BreathingChoice::cough_every_s},
-                                        {"hold-limit", 1.0, 120.0, &BreathingChoice::hold_limit_s}}};
+                                        {"hold-limit", 0.0, 120.0, &BreathingChoice::hold_limit_s}}};
 
 Result<double> number_within(std::string_view text, double low, double high, std::string_view what) {
   const auto number = parse_number<double>(text);
@@ -75,7 +75,7 @@ std::string to_text(const BreathingChoice& choice) {
   const BreathingChoice usual;
   for (const Field& field : kFields)
     if (choice.*field.member != usual.*field.member) text += fmt::format(",{}={}", field.name, choice.*field.member);
-  if (choice.seed != usual.seed) text += fmt::format(",seed={}", choice.seed);
+  if (choice.seed) text += fmt::format(",seed={}", *choice.seed);
   return text;
 }
 
@@ -94,9 +94,9 @@ Result<MotionDrive> drive_of(const BreathingChoice& choice, const MotionModel& m
   drive.irregularity = choice.irregularity;
   drive.cough_every_s = choice.cough_every_s;
   drive.hold_limit_s = choice.hold_limit_s;
-  drive.seed = choice.seed;
+  drive.seed = choice.seed.value_or(drive.seed);
   if (choice.liver_mm > 0.0)
-    drive.drift_per_s = -uniform01(choice.seed, kOfDrift) * kMostDrift_mm_per_s / model.parts().liver_mm;
+    drive.drift_per_s = -uniform01(drive.seed, kOfDrift) * kMostDrift_mm_per_s / model.parts().liver_mm;
   return drive;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,11 +21,11 @@ inline constexpr double kMostDrift_mm_per_s = 5.6 / 24.0;
 /// How somebody wants a patient to breathe, whoever the patient is.
 struct BreathingChoice {
   double liver_mm = 0.0;  ///< How far the liver moves down in a breath; 0: the patient does not breathe. Range 0..40.
-  double breaths_per_min = 14.0;  ///< Range 4..40. An adult at rest. [assumed]
-  double irregularity = 0.15;     ///< MotionDrive::irregularity. [assumed]
-  double cough_every_s = 0.0;     ///< MotionDrive::cough_every_s.
-  double hold_limit_s = 20.0;     ///< MotionDrive::hold_limit_s.
-  std::uint32_t seed = 1;
+  double breaths_per_min = 14.0;           ///< Range 4..40. An adult at rest. [assumed]
+  double irregularity = 0.15;              ///< MotionDrive::irregularity. [assumed]
+  double cough_every_s = 0.0;              ///< MotionDrive::cough_every_s.
+  double hold_limit_s = 20.0;              ///< MotionDrive::hold_limit_s.
+  std::optional<std::uint32_t> seed = {};  ///< Of what varies; empty: whatever the caller takes.
 
   bool operator==(const BreathingChoice&) const = default;
 };

@@ -210,19 +210,6 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
   return scene;
 }
 
-motion::PatientMotion recorded_motion(const motion::MotionModel* model, const motion::MotionDrive& drive,
-                                      const telemetry::TickSample& sample) noexcept {
-  const auto& [first, second, first_per_s, second_per_s] = sample.drivers;
-  motion::MotionState state;
-  state.time_s = sample.time_s;
-  state.phase = sample.breathing;
-  state.is_breath_held = sample.is_breath_held;
-  state.drivers = {first, second};
-  state.rates_per_s = {first_per_s, second_per_s};
-  const motion::PatientMotion motion(motion::moves(drive) ? model : nullptr, state);
-  return motion.is_finite() ? motion : motion::PatientMotion();
-}
-
 TissueAt tissue_at(const HapticScene& scene, const Vec3& p_A) noexcept {
   const double distance_mm = volume::sample_linear(scene.patient->skin_distance_mm, p_A);
   if (!(distance_mm <= 0.0)) return {};

@@ -116,10 +116,6 @@ Result<std::shared_ptr<const HapticScene>> make_haptic_scene(std::shared_ptr<con
                                                              const stylus::DeviceCapability& device = {},
                                                              const HapticOptions& options = {});
 
-/// Where a patient with this model was at a recorded tick, to the bit, if `drive` drove it then. Real-time safe.
-motion::PatientMotion recorded_motion(const motion::MotionModel* model, const motion::MotionDrive& drive,
-                                      const telemetry::TickSample& sample) noexcept;
-
 /// Tissue at a point of the anatomy at rest. Real-time safe.
 struct TissueAt {
   std::uint8_t tissue = 0;  ///< 0: air.

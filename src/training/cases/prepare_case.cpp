@@ -9,7 +9,9 @@
 #include "core/files/folders.h"
 #include "core/files/output_file.h"
 #include "core/log.h"
+#include "core/random.h"
 #include "motion/breathing_choice.h"
+#include "motion/patient_motion.h"
 #include "phantom/phantom.h"
 #include "tasks/assess_path.h"
 #include "tasks/fit_to_patient.h"
@@ -152,6 +154,20 @@ Status warn_of_unknown_names(const tasks::Task& task, const anatomy::VirtualPati
   return {};
 }
 
+/// Of the options, else of the task. An attempt begins anywhere in a breath.
+Result<motion::MotionDrive> breathing_in(const tasks::Task& task, const anatomy::VirtualPatient& patient,
+                                         const CaseOptions& options) {
+  constexpr std::uint64_t kOfBegin = 0x62656769;
+  const bool is_of_task = options.breathing.empty() && !options.held_phase;
+  if (is_of_task && task.breathing_mm > 0.0 && patient.motion == nullptr)
+    log_info("{} has no motion model and does not breathe; trocar patient motion makes one", patient.name);
+  std::string text = options.breathing;
+  if (is_of_task && task.breathing_mm > 0.0 && patient.motion != nullptr) text = fmt::format("{}", task.breathing_mm);
+  TROCAR_TRY(motion::MotionDrive drive, breathing_of(patient, text, options.held_phase, options.seed));
+  if (motion::moves(drive)) drive.begins_s = -uniform01(options.seed, kOfBegin) * drive.period_s;
+  return drive;
+}
+
 /// The path named by the task, measured like a planned one. Its faults are reported, but do not prevent the attempt.
 Result<tasks::PlannedPath> find_expert_path(const Case& the_case, const anatomy::VirtualPatient& patient) {
   const std::string& name = the_case.task.expert_path;
@@ -229,9 +245,10 @@ Result<anatomy::TissueTable> load_own_tissues(const std::string& patient_folder)
 }
 
 Result<motion::MotionDrive> breathing_of(const anatomy::VirtualPatient& patient, const std::string& text,
-                                         const std::optional<double>& held_phase) {
+                                         const std::optional<double>& held_phase, std::uint64_t seed) {
   if (text.empty() && !held_phase) return motion::MotionDrive();
-  TROCAR_TRY(const motion::BreathingChoice choice, motion::parse_breathing(text.empty() ? "quiet" : text));
+  TROCAR_TRY(motion::BreathingChoice choice, motion::parse_breathing(text.empty() ? "quiet" : text));
+  if (!choice.seed) choice.seed = static_cast<std::uint32_t>(seed);
   if (choice.liver_mm == 0.0 && held_phase)
     return fail_usage("a patient who does not breathe has no phase", "--phase", "choose a breath with --breathing");
   if (choice.liver_mm == 0.0) return motion::MotionDrive();
@@ -269,7 +286,7 @@ Result<Case> load_tables(const CaseOptions& options) {
 Result<Case> prepare_case(std::shared_ptr<const anatomy::VirtualPatient> patient, const CaseOptions& options,
                           const Progress& progress) {
   TROCAR_TRY(Case made, load_tables(options));
-  TROCAR_TRY(made.breathing, breathing_of(*patient, options.breathing, options.held_phase));
+  TROCAR_TRY(made.breathing, breathing_in(made.task, *patient, options));
   made.task = tasks::fit_to_patient(std::move(made.task), *patient);
   const tasks::TaskReadiness readiness = tasks::check_task(made.task, *patient);
   if (!readiness.is_possible)

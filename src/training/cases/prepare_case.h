@@ -31,7 +31,8 @@ struct CaseOptions {
   std::vector<std::string> overrides;  ///< "liver.k=0.5"
   std::string posture;                 ///< Posture of the patient; empty: tried in the order of tasks::postures_to_try.
   std::string level;                   ///< Name or number of a level of the task; empty: the task as it is.
-  /// How the patient breathes, as motion::parse_breathing() reads it; empty: not at all.
+  /// How the patient breathes, as motion::parse_breathing() reads it; empty: as the task says, if the patient has a
+  /// motion model.
   std::string breathing;
   std::optional<double> held_phase = {};  ///< The patient is held at this phase of the breath, 0..1.
   std::uint64_t seed = 1;
@@ -65,9 +66,10 @@ Result<Case> load_tables(const CaseOptions& options);
 std::string with_body(const std::string& patient, const tasks::Tier& level);
 
 /// The drive of a patient who breathes as a text says (empty: not), held at a phase of the breath if there is one (then
-/// quietly, if the text is empty). Errors (exit status 2): not such a text, a patient without a motion model.
+/// quietly, if the text is empty). `seed`: of what varies, unless the text has one. Errors (exit status 2): not such a
+/// text, a patient without a motion model.
 Result<motion::MotionDrive> breathing_of(const anatomy::VirtualPatient& patient, const std::string& text,
-                                         const std::optional<double>& held_phase);
+                                         const std::optional<double>& held_phase, std::uint64_t seed = 1);
 
 /// The plan of a case and the other paths that the patient brings for its task. A biopsy needle has only its plan.
 std::vector<tasks::PlannedPath> find_experts(const Case& the_case, const anatomy::VirtualPatient& patient);

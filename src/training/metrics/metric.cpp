@@ -24,6 +24,18 @@ Moment moment_of(const telemetry::TickSample& sample) {
   return moment;
 }
 
+motion::PatientMotion recorded_motion(const motion::MotionModel* model, const telemetry::TickSample& sample) noexcept {
+  const auto& [first, second, first_per_s, second_per_s] = sample.drivers;
+  motion::MotionState state;
+  state.time_s = sample.time_s;
+  state.phase = sample.breathing;
+  state.is_breath_held = sample.is_breath_held;
+  state.drivers = {first, second};
+  state.rates_per_s = {first_per_s, second_per_s};
+  const motion::PatientMotion motion(model, state);
+  return motion.is_finite() ? motion : motion::PatientMotion();
+}
+
 namespace {
 
 constexpr double kBeamStep_mm = 0.5;
@@ -31,8 +43,8 @@ constexpr double kBefore_mm = 1.0;  // the point's own surface does not hide it
 
 }  // namespace
 
-const anatomy::Label* find_shadow(const anatomy::VirtualPatient& patient, const ImagePlane& plane, const Pose& X_PT,
-                                  const Vec3& p_P) {
+const anatomy::Label* find_shadow(const anatomy::VirtualPatient& patient, const motion::PatientMotion& motion,
+                                  const ImagePlane& plane, const Pose& X_PT, const Vec3& p_P) {
   const Vec3 p_T = X_PT.inverse() * p_P;
   const Vec3 in_plane_T(p_T.x(), p_T.y(), 0.0);
   // Parallel scanlines begin above the point; those of a fan at the face, on the line to its virtual apex.
@@ -43,7 +55,8 @@ const anatomy::Label* find_shadow(const anatomy::VirtualPatient& patient, const 
   }
   const Vec3 way_T = in_plane_T - face_T;
   for (double at_mm = 0.0; at_mm < way_T.norm() - kBefore_mm; at_mm += kBeamStep_mm) {
-    const anatomy::Label* const label = anatomy::find_label(patient, X_PT * (face_T + at_mm * way_T.normalized()));
+    const anatomy::Label* const label =
+        anatomy::find_label(patient, motion.to_rest(X_PT * (face_T + at_mm * way_T.normalized())));
     if (label != nullptr && (label->tissue == "bone" || label->tissue == "lung" || label->tissue == "gas"))
       return label;
   }

@@ -9,6 +9,7 @@
 
 #include "anatomy/patient.h"
 #include "geometry/pose.h"
+#include "motion/patient_motion.h"
 #include "tasks/action.h"
 #include "tasks/needle.h"
 #include "tasks/task.h"
@@ -47,6 +48,9 @@ struct Moment {
 
 /// What a haptic tick says of the needle; image, X-ray and pauses are left out.
 Moment moment_of(const telemetry::TickSample& sample);
+
+/// Where the patient was at a recorded tick, to the bit. `model`: of a patient who was moved; else null.
+motion::PatientMotion recorded_motion(const motion::MotionModel* model, const telemetry::TickSample& sample) noexcept;
 
 /// Value of a metric. Either `value` is finite, or `missing` says why there is none.
 struct MetricValue {
@@ -186,9 +190,9 @@ std::span<const MetricGroup> metric_groups();
 std::vector<MetricDescription> metric_catalogue();
 
 /// The first structure between the transducer's face and a point that ultrasound does not pass: bone, lung, gas;
-/// nullptr: none. The beam runs along the scanline of the point's projection into the image plane, in the resting
-/// anatomy. `X_PT`: the transducer, `p_P` a point in its field.
-const anatomy::Label* find_shadow(const anatomy::VirtualPatient& patient, const ImagePlane& plane, const Pose& X_PT,
-                                  const Vec3& p_P);
+/// nullptr: none. The beam runs along the scanline of the point's projection into the image plane, through the patient
+/// as it is now. `X_PT`: the transducer, `p_P` a point in its field.
+const anatomy::Label* find_shadow(const anatomy::VirtualPatient& patient, const motion::PatientMotion& motion,
+                                  const ImagePlane& plane, const Pose& X_PT, const Vec3& p_P);
 
 }  // namespace trocar::metrics

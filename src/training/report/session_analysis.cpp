@@ -131,6 +131,10 @@ std::vector<StepTime> step_times(const storage::Session& session, const tasks::T
   std::size_t action = 0, transducer = 0, xray = 0;
   const std::vector<double> cores_s = core_times_s(session);
   double due_s = -1.0;
+  const bool is_moved =
+      patient.motion != nullptr && std::ranges::any_of(session.samples, [](const telemetry::TickSample& s) {
+        return s.drivers != telemetry::Drivers{};
+      });
   for (std::size_t n = 0; n < session.samples.size(); ++n) {
     const telemetry::TickSample& sample = session.samples[n];
     for (; action < session.actions.size() && session.actions[action].time_s <= sample.time_s; ++action)
@@ -140,6 +144,7 @@ std::vector<StepTime> step_times(const storage::Session& session, const tasks::T
     due_s = sample.time_s + kStepEvery_s;
     scoring::PhaseMoment moment;
     moment.needle = sample;
+    if (is_moved) moment.motion = metrics::recorded_motion(patient.motion.get(), sample);
     if (const storage::TransducerSample* pose = newest_of(session.transducer, transducer, sample.time_s)) {
       moment.X_PT = pose->X_PT;
       moment.contact_n = pose->contact_n;

@@ -80,7 +80,7 @@ struct PhaseTracker::Impl {
   bool holds(const Condition& condition, std::size_t phase, const PhaseMoment& moment) const;
   bool holds_of_actions(const Condition& condition, std::size_t phase) const;
   bool holds_of_image(const Condition& condition, const PhaseMoment& moment) const;
-  bool is_in_image(const Pose& X_PT, const Vec3& p_P, double most_mm) const;
+  bool is_in_image(const PhaseMoment& moment, const Vec3& p_P, double most_mm) const;
   bool is_path_clear(const PhaseMoment& moment, double margin_mm) const;
   bool is_in_target(const Vec3& p_P) const;
   bool has_passed(std::string_view names) const;
@@ -89,9 +89,11 @@ struct PhaseTracker::Impl {
   void open(double now_s);
 };
 
-bool PhaseTracker::Impl::is_in_image(const Pose& X_PT, const Vec3& p_P, double most_mm) const {
+bool PhaseTracker::Impl::is_in_image(const PhaseMoment& moment, const Vec3& p_P, double most_mm) const {
+  const Pose& X_PT = *moment.X_PT;
   const Vec3 p_T = X_PT.inverse() * p_P;
-  return std::abs(p_T.z()) <= most_mm && plane.is_in_field(p_T) && !metrics::find_shadow(patient, plane, X_PT, p_P);
+  return std::abs(p_T.z()) <= most_mm && plane.is_in_field(p_T) &&
+         !metrics::find_shadow(patient, moment.motion, plane, X_PT, p_P);
 }
 
 bool PhaseTracker::Impl::holds_of_image(const Condition& condition, const PhaseMoment& moment) const {
@@ -100,9 +102,9 @@ bool PhaseTracker::Impl::holds_of_image(const Condition& condition, const PhaseM
   const telemetry::TickSample& sample = moment.needle;
   switch (condition.kind) {
     case ConditionKind::kTargetInImage:
-      return moment.contact_n >= kContact_n && is_in_image(X_PT, target_P, condition.number);
+      return moment.contact_n >= kContact_n && is_in_image(moment, moment.motion.to_now(target_P), condition.number);
     case ConditionKind::kTipInImage:
-      return moment.contact_n >= kContact_n && is_in_image(X_PT, sample.tip_mm, condition.number);
+      return moment.contact_n >= kContact_n && is_in_image(moment, sample.tip_mm, condition.number);
     case ConditionKind::kNeedleInPlane: {
       const double across = std::abs(sample.axis.dot(X_PT.R().col(2)));
       const double angle_deg = kDegPerRad * std::asin(std::min(across, 1.0));
@@ -165,8 +167,6 @@ bool PhaseTracker::Impl::holds_of_actions(const Condition& condition, std::size_
     }
     case ConditionKind::kAnaesthetised:
       return done.injections > begin.injections;
-    case ConditionKind::kBreathHeld:
-      return is_breath_held && done.held_breaths > begin.held_breaths;
     case ConditionKind::kContrast:
       return done.contrast_in_target_ml - begin.contrast_in_target_ml >= condition.number;
     case ConditionKind::kWire:
@@ -220,6 +220,9 @@ bool PhaseTracker::Impl::holds(const Condition& condition, std::size_t phase, co
       const Mat3 R_PN = telemetry::device_pose(sample).R();
       return fibres_P && tasks::bevel_to_fibres_deg(R_PN, *fibres_P) <= condition.number;
     }
+    case ConditionKind::kBreathHeld:  // a patient who does not breathe is asked all the same
+      return done.held_breaths > begins[phase].held_breaths &&
+             (moment.motion.is_rest() ? is_breath_held : sample.is_breath_held);
     case ConditionKind::kMoved:
       return (sample.rest_tip_mm - *begins[phase].tip_P).norm() >= condition.number;
     default:

@@ -9,6 +9,7 @@
 #include "anatomy/patient.h"
 #include "geometry/pose.h"
 #include "metrics/metric.h"
+#include "motion/patient_motion.h"
 #include "tasks/action.h"
 #include "tasks/needle.h"
 #include "tasks/plan.h"
@@ -17,13 +18,14 @@
 
 namespace trocar::scoring {
 
-/// What a phase tracker needs of one moment. Frame P.
+/// What a phase tracker needs of one moment. The transducer is in P.
 struct PhaseMoment {
   telemetry::TickSample needle;
-  std::optional<Pose> X_PT;  ///< Transducer; empty: none.
-  double contact_n = 0.0;    ///< Of transducer and skin.
-  double contrast_ml = 0.0;  ///< Injected so far.
-  std::size_t cores = 0;     ///< Taken so far: shots into the body that brought tissue.
+  motion::PatientMotion motion;  ///< Where the patient is.
+  std::optional<Pose> X_PT;      ///< Transducer; empty: none.
+  double contact_n = 0.0;        ///< Of transducer and skin.
+  double contrast_ml = 0.0;      ///< Injected so far.
+  std::size_t cores = 0;         ///< Taken so far: shots into the body that brought tissue.
 };
 
 /// State of a phase of the task, in the task's order.

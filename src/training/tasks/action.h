@@ -71,7 +71,7 @@ enum class ActionKind : std::uint8_t {
   kReplaceStylet,  ///< Puts it back.
   kAspirate,       ///< Pulls at a syringe; the result is what comes.
   kAdvanceWire,    ///< Advances a guide wire through the needle; `amount`: mm beyond the tip.
-  kHoldBreath,     ///< Asks the patient to hold the breath. Acts once patients breathe.
+  kHoldBreath,     ///< Asks the patient to hold the breath; it does so at the end of the breath (motion/breathing.h).
   kBreathe,        ///< Ends it.
   kFire,           ///< Fires the loaded biopsy gun: the core is taken at this moment.
   kLoad,           ///< Takes the core out and loads the gun again: outside the body, or through a coaxial needle.

@@ -50,6 +50,7 @@ struct OperatorActions {
   std::size_t cores = 1;                    ///< Shots of a biopsy gun.
   /// The gun is loaded through a coaxial needle that stays at the target; false: each further core is another puncture.
   bool loads_inside = false;
+  bool holds_breath = false;  ///< The patient breathes, and is asked to hold the breath while the needle is inside.
 };
 /// Those that the task's phases and score ask for.
 OperatorActions actions_for(const Task& task, const Needle& needle);
@@ -72,15 +73,17 @@ struct OperatorCase {
   std::optional<double> error_share = {};
 };
 
-/// Follows the path: touches, pauses, inserts more slowly with more resistance, stops when the (virtual) tip is at the
-/// target, holds still, looks what comes back and presses on where a wall has not given way yet; or fires, loads the
-/// gun and fires again until all cores are taken, withdraws. Stops without firing if it cannot advance. The device must
-/// start at the pose of the first command. Takes about 10..30 s, at most 60.
+/// Asks the patient to hold the breath and waits for it, follows the path: touches, pauses, inserts more slowly with
+/// more resistance, stops when the (virtual) tip is at the target, holds still, looks what comes back and presses on
+/// where a wall has not given way yet; or fires, loads the gun and fires again until all cores are taken, withdraws.
+/// Stops without firing if it cannot advance. The device must start at the pose of the first command. Takes
+/// about 10..30 s, at most 60.
 std::unique_ptr<Operator> make_expert(const OperatorCase& the_case);
-/// Misses the entry and the angle, trembles, moves unevenly and too fast, hesitates, pulls back, looks what comes back
-/// every few millimetres or stops short or too deep; withdraws from bone and from where nothing comes, and tries again
-/// with smaller errors (twice at most): at random, from the seed. The same seed with a smaller error_share misses
-/// entry, angle and depth in the same direction by less. Never more than 60 s.
+/// May forget to ask the patient to hold the breath, or not wait until it is held; misses the entry and the angle,
+/// trembles, moves unevenly and too fast, hesitates, pulls back, looks what comes back every few millimetres or stops
+/// short or too deep; withdraws from bone and from where nothing comes, and tries again with smaller errors (twice at
+/// most): at random, from the seed. The same seed with a smaller error_share misses entry, angle and depth in the same
+/// direction by less. Never more than 60 s.
 std::unique_ptr<Operator> make_novice(const OperatorCase& the_case);
 /// Rigid: the device moves at the given speed, independent of forces, so that forces can be compared with closed forms.
 /// It moves from 10 mm before the entry to the target, fires there if the case does, and moves out again. speed in

@@ -34,6 +34,7 @@ constexpr double kHold_s = 0.5;
 constexpr double kMostHold_s = 3.0;
 constexpr double kExpertLoading_s = 3.0;  // takes the core out and loads the gun
 constexpr double kExpertWithdraw_mm_s = 30.0;
+constexpr double kOut_mm = -3.0;        // in front of the entry: the patient may breathe
 constexpr double kExpertStuck_s = 6.0;  // without a millimetre of progress: stop
 constexpr double kGiveUp_s = 45.0;
 
@@ -46,6 +47,7 @@ class Expert final : public Operator {
         cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
         loads_inside_(the_case.actions.loads_inside),
         actions_(the_case.actions),
+        breath_(the_case.actions.holds_breath),
         confirms_(the_case.actions.confirms),
         awaited_(the_case.actions.awaited) {}
 
@@ -54,6 +56,9 @@ class Expert final : public Operator {
     std::optional<ActionKind> action;
     double speed_mm_s = 0.0;
     switch (step_) {
+      case Step::kAsk:
+        if (!breath_.waits(view, hand_.elapsed_s())) enter(Step::kApproach);
+        break;
       case Step::kApproach:
         speed_mm_s = hand_.wanted_mm() < -kTouching_mm_s ? kApproach_mm_s : kTouching_mm_s;
         if (hand_.is_touching() || target_left_mm() < kFineZone_mm) enter(Step::kPause);
@@ -62,7 +67,7 @@ class Expert final : public Operator {
         if (in_step_s() > kSkinPause_s) enter(Step::kInsert);
         break;
       case Step::kInsert:
-        speed_mm_s = insertion_speed_mm_s();
+        speed_mm_s = breath_.waits(view, hand_.elapsed_s()) ? 0.0 : insertion_speed_mm_s();
         if (target_left_mm() < kArrived_mm) enter(Step::kHold);
         if (is_stuck()) enter(Step::kWithdraw);
         break;
@@ -94,11 +99,12 @@ class Expert final : public Operator {
         if (in_step_s() > kExpertLoading_s) {
           action = ActionKind::kLoad;
           stall_ = {};  // another insertion
-          enter(loads_inside_ ? Step::kHold : Step::kApproach);
+          enter(loads_inside_ ? Step::kHold : Step::kAsk);
         }
         break;
       case Step::kWithdraw:
         speed_mm_s = hand_.wanted_mm() > kExpertStart_mm ? -kExpertWithdraw_mm_s : 0.0;
+        if (hand_.tip_mm() < kOut_mm) breath_.release();
         if (hand_.tip_mm() < kExpertStart_mm + 2.0) enter(cores_left_ > 0 && !is_late() ? Step::kLoad : Step::kDone);
         if (hand_.elapsed_s() > kOutOfTime_s) enter(Step::kDone);
         break;
@@ -108,6 +114,7 @@ class Expert final : public Operator {
     if (is_late() && step_ < Step::kWithdraw) enter(Step::kWithdraw);
     hand_.move(speed_mm_s, view.dt_s);
     HandCommand command = hand_.command();
+    if (!action) action = breath_.take();
     if (action) command.action = ActionRequest{*action};
     if (!action)
       command.action =
@@ -117,7 +124,7 @@ class Expert final : public Operator {
   }
 
  private:
-  enum class Step { kApproach, kPause, kInsert, kHold, kAfterFire, kPress, kLoad, kWithdraw, kDone };
+  enum class Step { kAsk, kApproach, kPause, kInsert, kHold, kAfterFire, kPress, kLoad, kWithdraw, kDone };
 
   void enter(Step step) noexcept {
     step_ = step;
@@ -155,10 +162,11 @@ class Expert final : public Operator {
   std::size_t cores_left_;
   bool loads_inside_;
   PendingActions actions_;
+  BreathCommand breath_;
   std::optional<ActionKind> confirms_;
   Substance awaited_;
   int presses_left_ = kPresses;
-  Step step_ = Step::kApproach;
+  Step step_ = Step::kAsk;
   double step_start_s_ = 0.0;
   double drop_s_ = -10.0;
   StallWatch stall_;

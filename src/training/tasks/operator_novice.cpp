@@ -44,6 +44,9 @@ constexpr double kBetweenLooks_mm_s = 5.0;
 constexpr double kForgetsLook = 0.1;      // share of novices who never look and stop by depth
 constexpr double kBevelError_deg = 20.0;  // of those who turn it, at most
 constexpr double kNoviceWithdraw_mm_s = 50.0;
+constexpr double kBeforeStart_s[] = {1.0, 5.0};  // of those who ask the patient to hold the breath, until they begin
+constexpr double kPatient_s = 8.0;               // until the breath is held
+constexpr double kOutside_mm = -3.0;
 constexpr double kNoviceStuck_s = 5.0;
 constexpr double kBone_s = 1.5;          // without a millimetre of progress: it is bone
 constexpr int kCorrections = 2;          // after bone or without the fluid: out, another direction, in again
@@ -100,6 +103,16 @@ std::optional<Vec3> aim_bevel(const OperatorCase& the_case) noexcept {
   return Eigen::AngleAxisd(error_rad, the_case.path_P.direction()) * *the_case.bevel_P;
 }
 
+bool forgets_breath(const OperatorCase& the_case) noexcept {
+  Random random(mix64(the_case.seed + 5));
+  return random.uniform() > remembering(the_case);
+}
+
+double draw_wait_s(const OperatorCase& the_case) noexcept {
+  Random random(mix64(the_case.seed + 6));
+  return draw(random, kBeforeStart_s);
+}
+
 class Novice final : public Operator {
  public:
   explicit Novice(const OperatorCase& the_case) noexcept : Novice(the_case, Random(mix64(the_case.seed))) {}
@@ -109,6 +122,7 @@ class Novice final : public Operator {
     wanted_.reset();
     hand_.move(step(view), view.dt_s);
     HandCommand command = hand_.command();
+    if (!wanted_) wanted_ = breath_.take();
     if (wanted_) command.action = ActionRequest{*wanted_};
     if (!wanted_)
       command.action =
@@ -119,6 +133,7 @@ class Novice final : public Operator {
 
  private:
   enum class Step {
+    kAsk,
     kAdvance,
     kBackOut,
     kHesitate,
@@ -148,7 +163,9 @@ class Novice final : public Operator {
                      mix64(the_case.seed + 1))),
         cores_left_(the_case.fires_biopsy ? the_case.actions.cores : 0),
         loads_inside_(the_case.actions.loads_inside),
-        actions_(the_case.actions) {
+        actions_(the_case.actions),
+        breath_(the_case.actions.holds_breath && !forgets_breath(the_case)),
+        before_start_s_(std::lerp(kPatient_s, draw_wait_s(the_case), share_)) {
     Random forgets(mix64(the_case.seed + 2));
     if (forgets.uniform() > remembering(the_case)) actions_.forget_anaesthetic();
     if (the_case.actions.confirms && forgets.uniform() > kForgetsLook * share_) looks_ = the_case.actions;
@@ -172,6 +189,9 @@ class Novice final : public Operator {
   /// Decides what to do; returns the wanted speed inward, mm/s.
   double step(const OperatorView& view) noexcept {
     switch (step_) {
+      case Step::kAsk:
+        if (!breath_.waits(view, hand_.elapsed_s()) || in_step_s() > before_start_s_) enter(Step::kAdvance);
+        return 0.0;
       case Step::kAdvance:
         return advance();
       case Step::kBackOut:
@@ -215,6 +235,7 @@ class Novice final : public Operator {
         return 0.0;
       case Step::kWithdraw:
         if (hand_.tip_mm() < start_mm_ + 2.0 || hand_.elapsed_s() > kOutOfTime_s) enter(Step::kDone);
+        if (hand_.tip_mm() < kOutside_mm) breath_.release();
         return hand_.wanted_mm() > start_mm_ ? -withdraw_mm_s() : 0.0;
       case Step::kDone:
         return 0.0;
@@ -280,6 +301,8 @@ class Novice final : public Operator {
   std::size_t cores_left_;
   bool loads_inside_;
   PendingActions actions_;
+  BreathCommand breath_;
+  double before_start_s_;                 ///< After asking for it, a novice waits no longer for the breath to be held.
   std::optional<OperatorActions> looks_;  ///< Of those who look what comes back.
   std::optional<ActionKind> wanted_;      ///< With this tick.
   double stop_mm_ = 0.0;                  ///< Where the novice expects the target.
@@ -291,7 +314,7 @@ class Novice final : public Operator {
   std::array<Hesitation, 3> hesitations_{};
   std::size_t next_hesitation_ = 0;
   int corrections_left_ = kCorrections;
-  Step step_ = Step::kAdvance;
+  Step step_ = Step::kAsk;
   double step_start_s_ = 0.0;
   StallWatch stall_;
 };

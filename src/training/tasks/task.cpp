@@ -206,6 +206,7 @@ Result<Task> at_level(Task task, std::string_view name_or_number) {
   }
   const Tier& level = *found;
   task.level = level.name;
+  task.breathing_mm = level.breathing_mm.value_or(task.breathing_mm);
   if (level.time_limit_s > 0.0) task.time_limit_s = level.time_limit_s;
   for (double* const tolerance :
        {&task.target_tolerance_mm, &task.entry_tolerance_mm, &task.angle_tolerance_deg, &task.margin_tolerance_mm})

@@ -71,9 +71,9 @@ struct BevelRule {
 
 /// A level of difficulty of a task.
 struct Tier {
-  std::string name;              ///< "hard"
-  std::string title;             ///< One line: what is harder.
-  double breathing_mm = 0.0;     ///< Amplitude of the breathing. Data; acts once patients breathe. Range 0..40.
+  std::string name;                         ///< "hard"
+  std::string title;                        ///< One line: what is harder.
+  std::optional<double> breathing_mm = {};  ///< Replaces the task's. Range 0..40.
   double tremor_mm = 0.0;        ///< Added to a scripted operator's hand, rms of each lateral axis. Range 0..3.
   double time_limit_s = 0.0;     ///< Replaces the task's; 0: does not. Range 0..3600.
   double tolerance_share = 1.0;  ///< Factor on the tolerances of the score. Range 0.1..2.
@@ -113,6 +113,8 @@ struct Task {
   Substance confirmed_by = Substance::kNothing;
   std::vector<Phase> phases;  ///< Steps of the procedure, in the file's order.
   PainRules pain;
+  /// How far (mm) the liver moves down in a breath of the patient, unless told otherwise; 0: not at all. Range 0..40.
+  double breathing_mm = 0.0;
   std::string force_model = "insertion";  ///< insertion, proxy or combined; see docs/physics.md T2.
   /// Engine of the ultrasound image: raycast, or panorama if the patient has one (docs/physics.md U17).
   std::string ultrasound_engine = "raycast";

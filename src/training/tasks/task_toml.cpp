@@ -24,11 +24,34 @@ class TaskReader {
   TaskReader(const config::TomlTable& document, bool is_whole) : document_(document), is_whole_(is_whole) {}
 
   Status read(Task& task) const {
-    TROCAR_TRY_STATUS(document_.check_keys(
-        {"base",          "title",       "organ",    "target_tissues", "needle",  "force_model", "ultrasound_engine",
-         "path",          "parenchymal", "scoring",  "risks",          "target",  "entry_zone",  "expert_path",
-         "exam",          "needles",     "guidance", "confirmed_by",   "phases",  "pain",        "bevel",
-         "highest_entry", "levels",      "level",    "cores",          "posture", "harms"}));
+    TROCAR_TRY_STATUS(document_.check_keys({"base",
+                                            "title",
+                                            "organ",
+                                            "target_tissues",
+                                            "needle",
+                                            "force_model",
+                                            "ultrasound_engine",
+                                            "breathing_mm",
+                                            "path",
+                                            "parenchymal",
+                                            "scoring",
+                                            "risks",
+                                            "target",
+                                            "entry_zone",
+                                            "expert_path",
+                                            "exam",
+                                            "needles",
+                                            "guidance",
+                                            "confirmed_by",
+                                            "phases",
+                                            "pain",
+                                            "bevel",
+                                            "highest_entry",
+                                            "levels",
+                                            "level",
+                                            "cores",
+                                            "posture",
+                                            "harms"}));
     if (!is_whole_) TROCAR_TRY_STATUS(detail::read_level_of(document_, task));  // before keys that replace its numbers
     TROCAR_TRY_STATUS(text(document_, "title", task.title));
     TROCAR_TRY_STATUS(text(document_, "organ", task.organ));
@@ -186,6 +209,7 @@ class TaskReader {
     if (task.weights.contains("confirmation") && task.confirmed_by == Substance::kNothing)
       return fail("the confirmation has a weight and nothing confirms the target", document_.where(),
                   "give confirmed_by, or omit the weight");
+    TROCAR_TRY(task.breathing_mm, document_.number_or("breathing_mm", {0.0, 40.0}, task.breathing_mm));
     return read_pain(task);
   }
 
@@ -376,6 +400,7 @@ std::string task_to_toml(const Task& task, const Task& base) {
   keys.set_changed("organ", task.organ, base.organ);
   keys.set_changed("needle", task.needle, base.needle);
   keys.set_changed("force_model", task.force_model, base.force_model);
+  keys.set_changed("breathing_mm", task.breathing_mm, base.breathing_mm);
   keys.set_changed("ultrasound_engine", task.ultrasound_engine, base.ultrasound_engine);
   keys.set_changed("expert_path", task.expert_path, base.expert_path);
   keys.set_changed("target_tissues", task.target_tissues, base.target_tissues);

@@ -180,7 +180,7 @@ TEST(Breathing, RefusesImplausibleNumbers) {
     if (fault == 3) drive.pause_share = 0.9;
     if (fault == 4) drive.irregularity = 0.5;
     if (fault == 5) drive.cough_every_s = 1.0;
-    if (fault == 6) drive.hold_limit_s = 0.0;
+    if (fault == 6) drive.hold_limit_s = -1.0;
     if (fault == 7) drive.drift_per_s = 1.0;
     if (fault == 8) drive.begins_s = 1e12;
     if (fault == 9) drive.hold_s = std::nan("");

@@ -149,9 +149,11 @@ constexpr double kContact_n = 0.05;  ///< As in scoring/phase_tracker.cpp.
 
 }  // namespace
 
-std::string guide_transducer(const anatomy::VirtualPatient& patient, const Vec3& target_P, const Pose& X_PT,
-                             double contact_n, const metrics::ImagePlane& plane) {
-  if (!X_PT.is_finite() || !target_P.allFinite()) return {};
+std::string guide_transducer(const anatomy::VirtualPatient& patient, const motion::PatientMotion& motion,
+                             const Vec3& target_A, const Pose& X_PT, double contact_n,
+                             const metrics::ImagePlane& plane) {
+  if (!X_PT.is_finite() || !target_A.allFinite()) return {};
+  const Vec3 target_P = motion.to_now(target_A);
   if (!(contact_n >= kContact_n)) return "The transducer does not touch the skin: press it on";
   const Vec3 target_T = X_PT.inverse() * target_P;
   if (kDegPerRad * std::atan2(std::hypot(target_T.x(), target_T.z()), target_T.y()) > kGuideSteep_deg) {
@@ -164,7 +166,7 @@ std::string guide_transducer(const anatomy::VirtualPatient& patient, const Vec3&
                        anatomy::direction_words(aside_P));
   }
   if (plane.is_in_field(target_T)) {
-    const anatomy::Label* const before = metrics::find_shadow(patient, plane, X_PT, target_P);
+    const anatomy::Label* const before = metrics::find_shadow(patient, motion, plane, X_PT, target_P);
     if (before == nullptr) return "The target is in the image: hold still";
     return fmt::format("The {} hides the target: look beside it", anatomy::structure_words(before->name));
   }

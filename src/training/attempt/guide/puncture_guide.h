@@ -36,9 +36,10 @@ inline constexpr double kGuideDepth_mm = 1.5;   ///< Tolerance of the depth at t
 
 /// Advice to the trainee about a transducer whose image has to show a target; one sentence. Priority: contact with the
 /// skin, place on the skin, distance of the image plane from the target, edges of the image, what hides the target.
-/// `X_PT` and target in P, `contact_n`: force on the skin.
-std::string guide_transducer(const anatomy::VirtualPatient& patient, const Vec3& target_P, const Pose& X_PT,
-                             double contact_n, const metrics::ImagePlane& plane);
+/// `X_PT` in P, the target in the anatomy at rest, `contact_n`: force on the skin.
+std::string guide_transducer(const anatomy::VirtualPatient& patient, const motion::PatientMotion& motion,
+                             const Vec3& target_A, const Pose& X_PT, double contact_n,
+                             const metrics::ImagePlane& plane);
 /// True for a step that the transducer does: it has to touch the skin or to show the target.
 bool is_step_of_transducer(const tasks::Phase& phase);
 

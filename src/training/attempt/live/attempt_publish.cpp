@@ -2,6 +2,7 @@
 #include "attempt/guide/needle_view.h"
 #include "attempt/live/attempt_loop.h"
 #include "haptics/option_texts.h"
+#include "metrics/metric.h"
 #include "telemetry/tick_sample.h"
 
 namespace trocar::attempt {
@@ -58,7 +59,7 @@ motion::PatientMotion AttemptLoop::motion_now() {
     if (haptics::restore_options(newest->options, options, device)) drive_ = options.motion;
     drive_scene_ = scenes.newest_number();
   }
-  return haptics::recorded_motion(model, drive_, *needle_.last);
+  return metrics::recorded_motion(motion::moves(drive_) ? model : nullptr, *needle_.last);
 }
 
 NeedleView AttemptLoop::needle_now() const {
@@ -125,7 +126,7 @@ AttemptUpdate AttemptLoop::compose(AttemptPhase phase, Activity activity) {
   add_servers(view);
   if (now == nullptr || !now->watch || !needle_.last) return update;
   const bool is_moving = phase == AttemptPhase::kReady || phase == AttemptPhase::kInBody;
-  now->watch->step(*needle_.last, transducer_.last ? &*transducer_.last : nullptr);
+  now->watch->step(*needle_.last, transducer_.last ? &*transducer_.last : nullptr, view.motion);
   now->watch->add_to(view, *needle_.last, now->live.active_s(), options_.level);
   if (options_.is_guided && is_moving) view.hint = now->watch->hint(view, *needle_.last);
   update.forces = now->watch->take_forces(phase == AttemptPhase::kFinishing);

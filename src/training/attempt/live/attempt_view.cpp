@@ -67,10 +67,10 @@ AttemptEvent describe_action(const tasks::SubstanceTable& substances, const task
       told.text = fmt::format("guide wire {:.0f}\u00a0mm beyond the tip", action.amount);
       break;
     case tasks::ActionKind::kHoldBreath:
-      told.text = "the patient holds the breath";
+      told.text = "asked the patient to hold the breath";
       break;
     case tasks::ActionKind::kBreathe:
-      told.text = "the patient breathes again";
+      told.text = "told the patient to breathe again";
       break;
     case tasks::ActionKind::kFire:
       told.text = action.depth_mm > 0.0 ? "the gun was fired" : "the gun was fired outside the body";

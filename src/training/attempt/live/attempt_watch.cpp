@@ -33,6 +33,18 @@ void AttemptWatch::take(const telemetry::TickSample& sample) {
   if (const auto pain = pain_.step(sample)) events_.push_back(describe_pain(*pain));
   harm_.step(metrics::moment_of(sample));
   take_harm(sample);
+  take_breath(sample);
+}
+
+/// The patient begins some time after being asked, and ends it when the breath is short.
+void AttemptWatch::take_breath(const telemetry::TickSample& sample) {
+  if (sample.is_breath_held == is_breath_held_) return;
+  is_breath_held_ = sample.is_breath_held;
+  const char* const text = is_breath_held_        ? "the patient holds the breath"
+                           : is_breath_asked_for_ ? "the patient has to breathe"
+                                                  : "the patient breathes again";
+  if (!is_breath_held_) is_breath_asked_for_ = false;
+  events_.push_back({sample.time_s, sample.depth_mm, telemetry::EventKind::kNone, "breath", text});
 }
 
 void AttemptWatch::take_harm(const telemetry::TickSample& sample) {
@@ -52,6 +64,8 @@ void AttemptWatch::take_actions() {
     if (phases_) phases_->note(action);
     pain_.note(action);
     harm_.note(action);
+    if (action.kind == tasks::ActionKind::kHoldBreath) is_breath_asked_for_ = true;
+    if (action.kind == tasks::ActionKind::kBreathe) is_breath_asked_for_ = false;
     if (action.kind == tasks::ActionKind::kFire) continue;  // told as a shot
     events_.push_back(describe_action(case_->substances, action, case_->patient.get()));
   }
@@ -93,13 +107,15 @@ void AttemptWatch::repeat_phase(std::size_t phase) {
   if (phases_) phases_->repeat(phase);
 }
 
-void AttemptWatch::step(const telemetry::TickSample& needle, const telemetry::TickSample* transducer) {
+void AttemptWatch::step(const telemetry::TickSample& needle, const telemetry::TickSample* transducer,
+                        const motion::PatientMotion& motion) {
   constexpr double kEvery_s = 0.02;
   tell_injection(needle);
   if (!phases_ || needle.time_s < phases_s_ + kEvery_s) return;
   phases_s_ = needle.time_s;
   scoring::PhaseMoment moment;
   moment.needle = needle;
+  moment.motion = motion;
   if (transducer != nullptr) {
     moment.X_PT = telemetry::felt_probe(*transducer);
     moment.contact_n = transducer->f_constraint_n.norm();
@@ -117,6 +133,7 @@ void AttemptWatch::add_to(AttemptView& view, const telemetry::TickSample& needle
   view.is_gun_loaded = tasks::is_gun_loaded(record_->actions());
   view.session_s = active_s;
   if (contact_s_) view.since_contact_s = tasks::active_time_s(*contact_s_, needle.time_s, record_->interruptions());
+  view.is_breath_held = is_breath_asked_for_;
   view.shot = shot_;
   if (shot_) view.since_shot_s = needle.time_s - shot_->time_s;
   const tasks::Action* wire = tasks::find_wire(record_->actions(), std::numeric_limits<double>::infinity());
@@ -124,8 +141,6 @@ void AttemptWatch::add_to(AttemptView& view, const telemetry::TickSample& needle
   for (const tasks::Action& action : record_->actions()) {
     if (action.kind == tasks::ActionKind::kDrawStylet) view.is_stylet_drawn = true;
     if (action.kind == tasks::ActionKind::kReplaceStylet) view.is_stylet_drawn = false;
-    if (action.kind == tasks::ActionKind::kHoldBreath) view.is_breath_held = true;
-    if (action.kind == tasks::ActionKind::kBreathe) view.is_breath_held = false;
   }
   if (level == "exam") return;
   if (view.banner.empty()) add_harm(view, needle.time_s);
@@ -164,8 +179,8 @@ std::string AttemptWatch::hint(const AttemptView& view, const telemetry::TickSam
   if (view.current_phase && view.probe.is_known && plane_ && is_outside && view.shots == 0 &&
       is_step_of_transducer(case_->task.phases[*view.current_phase])) {
     const Segment& path_P = case_->plan.line_P;
-    const Vec3 target_P = path_P.b + case_->needle.notch_middle_mm() * path_P.direction();
-    return guide_transducer(*case_->patient, target_P, view.probe.X_PT, view.probe.contact_n, *plane_);
+    const Vec3 target_A = path_P.b + case_->needle.notch_middle_mm() * path_P.direction();
+    return guide_transducer(*case_->patient, view.motion, target_A, view.probe.X_PT, view.probe.contact_n, *plane_);
   }
   GuideState state{cores_, view.is_gun_loaded, shot_.get()};
   for (const tasks::Action& action : record_->actions())

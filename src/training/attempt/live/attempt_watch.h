@@ -36,7 +36,8 @@ class AttemptWatch {
   /// Opens a phase of the task again.
   void repeat_phase(std::size_t phase);
   /// Call once a poll. `transducer`: its newest tick; null: none has come.
-  void step(const telemetry::TickSample& needle, const telemetry::TickSample* transducer);
+  void step(const telemetry::TickSample& needle, const telemetry::TickSample* transducer,
+            const motion::PatientMotion& motion);
 
   /// `level` "exam": neither steps nor harm are shown. The view's needle, transducer and banner are set.
   void add_to(AttemptView& view, const telemetry::TickSample& needle, double active_s, const std::string& level) const;
@@ -51,6 +52,7 @@ class AttemptWatch {
  private:
   void take_harm(const telemetry::TickSample& sample);
   void take_shots();
+  void take_breath(const telemetry::TickSample& sample);
   void tell_injection(const telemetry::TickSample& needle);
   void add_phases(AttemptView& view) const;
   void add_harm(AttemptView& view, double now_s) const;
@@ -70,6 +72,8 @@ class AttemptWatch {
   std::size_t cores_ = 0;                          ///< Taken so far.
   std::optional<metrics::HarmEvent> told_harm_;    ///< The last critical or major one.
   double told_harm_s_ = 0.0;                       ///< Time at which it was told.
+  bool is_breath_asked_for_ = false;               ///< And neither released nor ended by the patient.
+  bool is_breath_held_ = false;                    ///< At the last sample.
   double contrast_ml_ = 0.0;
   std::optional<tasks::ContrastInjection> injection_;  ///< Not told yet.
 };

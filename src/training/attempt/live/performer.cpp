@@ -6,6 +6,7 @@
 #include "attempt/record/attempt_record.h"
 #include "core/text.h"
 #include "haptics/haptic_scene.h"
+#include "motion/patient_motion.h"
 #include "tasks/fit_to_patient.h"
 
 namespace trocar::attempt {
@@ -78,6 +79,7 @@ Result<Performer> make_named(const cases::Case& the_case, const RunOptions& opti
                            tasks::actions_for(the_case.task, the_case.needle)};
   what.bevel_P = tasks::planned_bevel_P(the_case.task, *the_case.patient, the_case.plan.line_P);
   what.cover_mm = tasks::landmark_cover_mm(the_case.task, *the_case.patient, the_case.plan.line_P);
+  what.actions.holds_breath = motion::moves(the_case.breathing) && !the_case.breathing.is_held;
   if (const tasks::Tier* const level = tasks::level_of(the_case.task)) what.tremor_mm = level->tremor_mm;
   const std::string& force_model = the_case.task.force_model;
   TROCAR_TRY(const OperatorChoice choice, parse_operator(options.operator_name));

@@ -16,6 +16,7 @@
 #include "core/log.h"
 #include "haptics/option_texts.h"
 #include "haptics/tick.h"
+#include "metrics/metric.h"
 #include "stylus/device_preset.h"
 #include "stylus/virtual_stylus.h"
 #include "tasks/operator.h"
@@ -136,7 +137,7 @@ class RecordedTicks {
   /// Where the patient is: as its clock says, or as recorded.
   motion::PatientMotion motion(std::size_t tick, const motion::MotionClock& clock) const noexcept {
     if (session_ == nullptr || session_->samples.empty()) return haptics::motion_of(clock, time_s(tick));
-    return haptics::recorded_motion(clock.model, clock.drive,
+    return metrics::recorded_motion(motion::moves(clock.drive) ? clock.model : nullptr,
                                     session_->samples[std::min(tick, session_->samples.size() - 1)]);
   }
   /// The interruption that ends at the tick; null: none.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "haptics/option_texts.h"
+#include "metrics/metric.h"
 
 namespace trocar::attempt {
 
@@ -19,8 +20,8 @@ SessionMotion::SessionMotion(const storage::Session& session, const anatomy::Vir
 motion::PatientMotion SessionMotion::at(const telemetry::TickSample& sample) const noexcept {
   const auto next =
       std::ranges::upper_bound(drives_, sample.time_s, {}, &std::pair<double, motion::MotionDrive>::first);
-  return haptics::recorded_motion(model_, next == drives_.begin() ? motion::MotionDrive() : std::prev(next)->second,
-                                  sample);
+  const bool is_moved = next != drives_.begin() && motion::moves(std::prev(next)->second);
+  return metrics::recorded_motion(is_moved ? model_ : nullptr, sample);
 }
 
 }  // namespace trocar::attempt

@@ -39,7 +39,7 @@ std::vector<TraineeAction> actions_of(const tasks::Task& task, const tasks::Need
   if (!needle.is_biopsy && needle.stylet_diameter_mm > 0.0) actions.push_back(TraineeAction::kStylet);
   if (!needle.is_biopsy && needle.inner_diameter_mm > 0.0) actions.push_back(TraineeAction::kAspirate);
   if (asks_for(task, Kind::kWire)) actions.push_back(TraineeAction::kWire);
-  if (asks_for(task, Kind::kBreathHeld)) actions.push_back(TraineeAction::kBreath);
+  if (asks_for(task, Kind::kBreathHeld) || task.breathing_mm > 0.0) actions.push_back(TraineeAction::kBreath);
   if (needle.is_biopsy) actions.push_back(TraineeAction::kLoad);
   return actions;
 }

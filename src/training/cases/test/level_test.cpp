@@ -30,6 +30,27 @@ TEST(Level, RoundTripsThroughTheTaskText) {
   EXPECT_LT(made->task.target_tolerance_mm, plain->task.target_tolerance_mm);
 }
 
+TEST(Level, ReplacesTheBreathingOfTheTask) {
+  const auto breathing_mm = [](const char* task, const char* level) {
+    CaseOptions options;
+    options.task = task;
+    options.level = level;
+    const auto made = load_tables(options);
+    return made ? made->task.breathing_mm : -1.0;
+  };
+  EXPECT_EQ(breathing_mm("liver-biopsy", ""), 10.0);
+  EXPECT_EQ(breathing_mm("liver-biopsy", "basic"), 4.0);
+  EXPECT_EQ(breathing_mm("liver-biopsy", "hard"), 18.0);
+  EXPECT_EQ(breathing_mm("ptcd", ""), 10.0);
+  EXPECT_EQ(breathing_mm("lumbar-puncture", ""), 0.0);
+  const TemporaryFolder folder;
+  const std::string file = folder / "deep.toml";
+  ASSERT_TRUE(write_file_atomically(file, "base = \"lumbar-puncture\"\nbreathing_mm = 7.5\n"));
+  EXPECT_EQ(breathing_mm(file.c_str(), ""), 7.5);
+  ASSERT_TRUE(write_file_atomically(file, "base = \"lumbar-puncture\"\nbreathing_mm = 70\n"));
+  EXPECT_EQ(breathing_mm(file.c_str(), ""), -1.0);
+}
+
 TEST(CaseTables, RefuseABiopsyGunForAConfirmedTarget) {
   const TemporaryFolder folder;
   const std::string file = folder / "proof.toml";

@@ -46,6 +46,27 @@ TEST_F(OpenedCase, HoldsAllDisplayedData) {
   EXPECT_GT(steps.size(), 2u);
 }
 
+TEST_F(OpenedCase, BreathesAsTheTaskSays) {
+  const auto breathing = [](const std::string& text, std::uint64_t seed, std::optional<double> held_phase = {}) {
+    CaseOptions options;
+    options.breathing = text;
+    options.seed = seed;
+    options.held_phase = held_phase;
+    return prepare_case(opened->the_case.patient, options)->breathing;
+  };
+  const motion::MotionDrive quiet = breathing("", 5);
+  EXPECT_TRUE(motion::moves(quiet));
+  EXPECT_EQ(quiet, breathing("10", 5)) << "said by the task or by the options";
+  EXPECT_NE(quiet, breathing("", 6)) << "another attempt, other breaths";
+  EXPECT_LE(quiet.begins_s, 0.0);
+  EXPECT_GT(quiet.begins_s, -quiet.period_s);
+  EXPECT_FALSE(motion::moves(breathing("none", 5)));
+  EXPECT_TRUE(breathing("", 5, 0.5).is_held);
+  auto still = std::make_shared<anatomy::VirtualPatient>(*opened->the_case.patient);
+  still->motion = nullptr;
+  EXPECT_FALSE(motion::moves(prepare_case(still, {})->breathing)) << "a patient without a model rests";
+}
+
 TEST_F(OpenedCase, PredictsThreePunctures) {
   const auto events = find_curve_events(opened->predicted, opened->the_case.tissues);
   ASSERT_EQ(events.size(), 3u);

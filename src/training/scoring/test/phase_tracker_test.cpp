@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "motion/testing/sliding_motion.h"
 #include "scoring/test/outcome_support.h"
 #include "tasks/fit_to_patient.h"
 #include "tasks/testing/attempt_patient.h"
@@ -47,6 +48,42 @@ class Phases : public ::testing::Test {
   std::optional<Pose> X_PT_ = Pose(Mat3::Identity(), Vec3(40.0, 0.0, 50.0));
   double contact_n_ = 2.0;
 };
+
+/// A patient who breathes holds the breath some time after being asked, and not for ever; one at rest at once.
+TEST_F(Phases, BreathIsHeldWhenThePatientHoldsIt) {
+  const auto model = motion::testing::uniform_model({0.0, 0.0, -30.0});
+  motion::MotionState state;
+  state.drivers[0] = 0.5;
+  for (const bool breathes : {true, false}) {
+    task_.phases.clear();
+    add("breath", {{ConditionKind::kBreathHeld, 0.0, {}}});
+    PhaseTracker tracked = tracker();
+    PhaseMoment moment = at(0.0, {50.0, -10.0, 50.0});
+    if (breathes) moment.motion = motion::PatientMotion(model.get(), state);
+    tracked.step(moment);
+    EXPECT_FALSE(tracked.states()[0].done_s);
+    tracked.note({0.0, tasks::ActionKind::kHoldBreath, 0.0, {}, Vec3::Zero(), 0.0});
+    tracked.step(moment);
+    EXPECT_EQ(tracked.states()[0].done_s.has_value(), !breathes);
+    moment.needle.is_breath_held = true;
+    tracked.step(moment);
+    EXPECT_TRUE(tracked.states()[0].done_s);
+  }
+}
+
+/// The target is where the patient has moved it.
+TEST_F(Phases, TargetInTheImageMovesWithThePatient) {
+  const auto model = motion::testing::uniform_model({0.0, 0.0, -30.0});
+  PhaseMoment moment = at(0.0, {50.0, -10.0, 50.0});
+  const std::vector<tasks::Condition> in_image{{ConditionKind::kTargetInImage, 5.0, {}}};
+  EXPECT_TRUE(is_done_by(in_image, moment));
+  motion::MotionState state;
+  state.drivers[0] = 1.0;
+  moment.motion = motion::PatientMotion(model.get(), state);
+  EXPECT_FALSE(is_done_by(in_image, moment));
+  moment.X_PT = Pose(Mat3::Identity(), Vec3(40.0, 0.0, 20.0));
+  EXPECT_TRUE(is_done_by(in_image, moment));
+}
 
 TEST_F(Phases, OpenInOrderAndStayDone) {
   add("touch", {{ConditionKind::kTipOnSkin, 0.0, {}}});

@@ -99,6 +99,40 @@ class StallWatch {
   double gained_s_ = 0.0;
 };
 
+/// Asks the patient to hold the breath, and to breathe again.
+class BreathCommand {
+ public:
+  explicit BreathCommand(bool is_used) noexcept : is_used_(is_used) {}
+
+  /// Asks if the breath is not held. True: not held yet, wait; false as well for a patient who does not manage it.
+  bool waits(const OperatorView& view, double now_s) noexcept {
+    if (!is_used_ || view.last.is_breath_held) {
+      was_held_ = was_held_ || view.last.is_breath_held;
+      return false;
+    }
+    if (std::exchange(was_held_, false)) asked_s_.reset();  // breathes again: is asked again
+    if (!asked_s_) {
+      asked_s_ = now_s;
+      wanted_ = ActionKind::kHoldBreath;
+    }
+    is_used_ = now_s - *asked_s_ <= kPatience_s;
+    return is_used_;
+  }
+  void release() noexcept {
+    if (asked_s_) wanted_ = ActionKind::kBreathe;
+    asked_s_.reset();
+    was_held_ = false;
+  }
+  std::optional<ActionKind> take() noexcept { return std::exchange(wanted_, std::nullopt); }
+
+ private:
+  static constexpr double kPatience_s = 8.0;  // about two breaths; assumed
+  bool is_used_;
+  bool was_held_ = false;
+  std::optional<double> asked_s_;
+  std::optional<ActionKind> wanted_;
+};
+
 /// The actions that a scripted operator has still to do, each once.
 class PendingActions {
  public:

@@ -67,7 +67,9 @@ Result<Tier> read_level(const config::TomlTable& row) {
   Tier level;
   TROCAR_TRY(level.name, row.string("name"));
   TROCAR_TRY(level.title, row.string("title"));
-  TROCAR_TRY(level.breathing_mm, row.number_or("breathing_mm", {0.0, 40.0}, 0.0));
+  if (row.has("breathing_mm")) {
+    TROCAR_TRY(level.breathing_mm, row.number("breathing_mm", {0.0, 40.0}));
+  }
   TROCAR_TRY(level.tremor_mm, row.number_or("tremor_mm", {0.0, 3.0}, 0.0));
   TROCAR_TRY(level.time_limit_s, row.number_or("time_limit_s", {0.0, 3600.0}, 0.0));
   TROCAR_TRY(level.tolerance_share, row.number_or("tolerance_share", {0.1, 2.0}, 1.0));
@@ -96,7 +98,7 @@ void write_level(config::TomlWriter& writer, const Tier& level) {
   writer.begin_row("levels");
   writer.set("name", level.name);
   writer.set("title", level.title);
-  writer.set("breathing_mm", level.breathing_mm);
+  if (level.breathing_mm) writer.set("breathing_mm", *level.breathing_mm);
   writer.set("tremor_mm", level.tremor_mm);
   writer.set("time_limit_s", level.time_limit_s);
   writer.set("tolerance_share", level.tolerance_share);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "core/testing/allocation_guard.inc.h"
 #include "geometry/pose.h"
@@ -82,6 +84,83 @@ TEST(Expert, TakesCoresCoaxiallyOrByRepeatedPuncture) {
       EXPECT_LT(shallowest_mm, -15.0);
     }
   }
+}
+
+/// Asked to hold the breath, the patient does so after a while, for as long as it can; a limit of 0: not at all.
+struct Breathing final : Operator {
+  HandCommand next(const OperatorView& view) noexcept override {
+    OperatorView seen = view;
+    const double since_s = asked_s ? view.time_s - *asked_s - kReacts_s : -1.0;
+    seen.last.is_breath_held = since_s >= 0.0 && since_s < limit_s;
+    was_held = was_held || seen.last.is_breath_held;
+    const HandCommand command = watched.next(seen);
+    if (!seen.last.is_breath_held && view.last.depth_mm > 0.0) unheld_s += view.dt_s;
+    if (!command.action) return command;
+    kinds.push_back(command.action->kind);
+    if (kinds.back() == ActionKind::kHoldBreath) asked_s = view.time_s;
+    if (kinds.back() == ActionKind::kBreathe) asked_s.reset();
+    return command;
+  }
+  Breathing(Operator& o, double limit) : watched(o), limit_s(limit) {}
+  static constexpr double kReacts_s = 4.0;
+  Operator& watched;
+  double limit_s;
+  std::optional<double> asked_s;
+  bool was_held = false;
+  double unheld_s = 0.0;  ///< Of the needle in the body.
+  std::vector<ActionKind> kinds;
+};
+
+OperatorCase breathing_case(std::uint64_t seed = 1) {
+  OperatorCase the_case = case_of_length(60.0, seed);
+  the_case.actions.holds_breath = true;
+  return the_case;
+}
+
+TEST(Expert, InsertsOnlyWhileTheBreathIsHeld) {
+  using enum ActionKind;
+  const OperatorCase the_case = breathing_case();
+  LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
+  auto expert = make_expert(the_case);
+  Breathing patient(*expert, 20.0);
+  body.run(patient, 60.0);
+  EXPECT_TRUE(body.is_done);
+  EXPECT_EQ(patient.kinds, (std::vector<ActionKind>{kHoldBreath, kFire, kBreathe}));
+  EXPECT_EQ(patient.unheld_s, 0.0);
+}
+
+TEST(Expert, AsksAgainAndGoesOnWithoutAHeldBreath) {
+  for (const double limit_s : {4.0, 0.0}) {
+    const OperatorCase the_case = breathing_case();
+    LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.001);
+    auto expert = make_expert(the_case);
+    Breathing patient(*expert, limit_s);
+    body.run(patient, 60.0);
+    EXPECT_TRUE(body.is_done) << limit_s;
+    EXPECT_EQ(body.fired.size(), 1u) << limit_s;
+    const auto asked = std::ranges::count(patient.kinds, ActionKind::kHoldBreath);
+    EXPECT_EQ(asked > 1, limit_s > 0.0) << asked;
+  }
+}
+
+TEST(Novice, SometimesForgetsToAskForTheBreath) {
+  int asks = 0, waits = 0;
+  constexpr int kNovices = 60;
+  for (int seed = 1; seed <= kNovices; ++seed) {
+    const OperatorCase the_case = breathing_case(static_cast<std::uint64_t>(seed));
+    LayeredBody body(the_case.path_P, skin_muscle_capsule(), 0.004);
+    auto novice = make_novice(the_case);
+    Breathing patient(*novice, 20.0);
+    body.run(patient, 60.0);
+    EXPECT_TRUE(body.is_done) << seed;
+    const bool has_asked = !patient.kinds.empty() && patient.kinds.front() == ActionKind::kHoldBreath;
+    asks += has_asked ? 1 : 0;
+    waits += has_asked && patient.was_held && patient.unheld_s < 1.0 ? 1 : 0;
+  }
+  EXPECT_GT(asks, kNovices / 2);
+  EXPECT_LT(asks, kNovices * 9 / 10);
+  EXPECT_GT(waits, 0);
+  EXPECT_LT(waits, asks);
 }
 
 /// An operator that sees `substance` come back from a depth on, nothing before it.

@@ -81,7 +81,7 @@ TEST(OwnTask, KeepsALandmarkZoneAndALevel) {
   EXPECT_TRUE(*read == *hard) << task_to_toml(*hard, liver_biopsy());
 }
 
-TEST(OwnTask, ALevelChangesTimeLimitAndTolerancesOnly) {
+TEST(OwnTask, ALevelChangesTimeLimitTolerancesAndBreathingOnly) {
   Task task = changed_task();
   const auto hard = at_level(task, "hard");
   ASSERT_TRUE(hard) << hard.error().text();
@@ -91,6 +91,7 @@ TEST(OwnTask, ALevelChangesTimeLimitAndTolerancesOnly) {
   Task back = *hard;
   back.level.clear();
   back.time_limit_s = task.time_limit_s;
+  back.breathing_mm = task.breathing_mm;
   back.target_tolerance_mm = task.target_tolerance_mm;
   back.entry_tolerance_mm = task.entry_tolerance_mm;
   back.angle_tolerance_deg = task.angle_tolerance_deg;

@@ -40,7 +40,7 @@ anatomy::VirtualPatient with_rib(bool has_rib) {
 }
 
 std::string advice(const Vec3& target_T, double contact_n = 1.0, bool has_rib = false) {
-  return guide_transducer(with_rib(has_rib), from_the_front() * target_T, from_the_front(), contact_n, fan());
+  return guide_transducer(with_rib(has_rib), {}, from_the_front() * target_T, from_the_front(), contact_n, fan());
 }
 
 TEST(TransducerGuide, AdvisesSkinContactFirst) {
@@ -62,7 +62,7 @@ TEST(TransducerGuide, StatesWhichImageEdgeHidesTheTarget) {
   metrics::ImagePlane narrow = fan();
   narrow.field_of_view_rad = 0.3;
   const std::string beside =
-      guide_transducer(with_rib(false), from_the_front() * Vec3(40.0, 60.0, 0.0), from_the_front(), 1.0, narrow);
+      guide_transducer(with_rib(false), {}, from_the_front() * Vec3(40.0, 60.0, 0.0), from_the_front(), 1.0, narrow);
   EXPECT_NE(beside.find("to the patient's left"), std::string::npos) << beside;
 }
 
