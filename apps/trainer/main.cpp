@@ -13,6 +13,7 @@
 #include "command.h"
 #include "core/files/folders.h"
 #include "core/version.h"
+#include "motion/breathing_choice.h"
 #include "pages/start_page.h"
 #include "phantom/phantom.h"
 #include "program_end.h"
@@ -37,7 +38,7 @@ using namespace trocar::trainer;
 namespace fs = std::filesystem;
 
 struct Arguments {
-  std::optional<std::string> task, patient;
+  std::optional<std::string> task, patient, breathing;
   std::optional<std::uint64_t> patient_seed;
   std::vector<std::string> scripts;
   std::string screenshot, state_folder, database;
@@ -52,6 +53,9 @@ void add_options(arguments::Program& app, Arguments& arguments) {
   app.add_option("--patient", arguments.patient, "Patient folder, or an embedded patient's name");
   app.add_option("--patient-seed", arguments.patient_seed, "Random seed for the anatomy of an embedded patient [1]")
       .seed();
+  app.add_option("--breathing", arguments.breathing,
+                 "How the patient breathes: none, quiet, deep or the liver's motion in mm, then for example "
+                 ",rate=18,hold-limit=12 [as the task says]");
   app.add_option("--script", arguments.scripts,
                  "Run scripts of user actions one after the other, then exit; exit status 1 if a step fails")
       .existing_file();
@@ -84,6 +88,10 @@ Result<TrainerChoice> with_arguments(TrainerChoice choice, const Arguments& argu
   if (arguments.task) {
     TROCAR_TRY(const tasks::Task task, tasks::load_task(data_dir() / "tasks", *arguments.task));
     choice.task = task.name;
+  }
+  if (arguments.breathing) {
+    TROCAR_TRY_STATUS(motion::parse_breathing(*arguments.breathing));
+    choice.breathing = *arguments.breathing;
   }
   if (arguments.patient_seed) choice.patient_seed = *arguments.patient_seed;
   if (!arguments.patient) return choice;

@@ -28,6 +28,7 @@ inline std::shared_ptr<const cases::OpenCase> prepared_case(const std::string& p
   cases::OpenCase open;
   open.choice.patient_source = open.server_source = patient_name;
   open.the_case = *std::move(the_case);
+  open.the_case.breathing = {};  // what is compared is at rest
   open.force_model = open.the_case.task.force_model;
   const attempt::RestingTransducer resting(*open.the_case.patient, open.the_case.plan.line_P);
   open.X_PT_start = resting.at(10.0).X_PN;  // pressed onto the skin

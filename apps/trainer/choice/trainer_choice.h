@@ -20,6 +20,7 @@ struct TrainerChoice {
   bool is_tutorial = false;     ///< The guided first puncture: not recorded for a person.
   std::string needle;           ///< Empty: the default of the task.
   std::string force_model;      ///< Empty: the default of the task.
+  std::string breathing;        ///< As motion::parse_breathing() reads it; empty: as the task says. Not in an exam.
   TrainingMode mode = TrainingMode::kGuided;
   /// Devices of needle and transducer: values of trocar-hapticd --device. "mouse" is the simulated device with a
   /// workspace for a whole body.

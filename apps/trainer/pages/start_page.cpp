@@ -224,6 +224,11 @@ QWidget* StartPage::make_help_choice() {
   model_->addItem(tr("Insertion model"), QStringLiteral("insertion"));
   model_->addItem(tr("Volume proxy"), QStringLiteral("proxy"));
   model_->addItem(tr("Both combined"), QStringLiteral("combined"));
+  breathing_ = add(tr("Breathing"), "breathing");
+  breathing_->addItem(tr("As defined by the task"), QString());
+  breathing_->addItem(tr("None"), QStringLiteral("none"));
+  breathing_->addItem(tr("Quiet"), QStringLiteral("quiet"));
+  breathing_->addItem(tr("Deep"), QStringLiteral("deep"));
   content->addLayout(tool_form_);
   connect(difficulty_, QOverload<QAbstractButton*, bool>::of(&QButtonGroup::buttonToggled), this,
           [this] { lock_for_exam(); });
@@ -242,7 +247,7 @@ void StartPage::offer_next(const QString& title, const QString& why, const Train
   next_->offer(title, why, exercise);
 }
 
-/// The devices stay; needle and forces are those of the task.
+/// The devices stay; needle, forces and breathing are those of the task.
 void StartPage::start_exercise(const TrainerChoice& exercise) {
   TrainerChoice next = exercise;
   next.needle_device = devices_->needle();
@@ -272,7 +277,7 @@ void StartPage::choose_difficulty(int difficulty) {
 void StartPage::lock_for_exam() {
   const bool is_exam = difficulty_->checkedId() == static_cast<int>(TrainingMode::kExam);
   exam_->setVisible(is_exam);
-  for (QComboBox* box : {needle_, model_}) {
+  for (QComboBox* box : {needle_, model_, breathing_}) {
     box->setEnabled(!is_exam);
     box->setVisible(!is_exam);
     tool_form_->labelForField(box)->setVisible(!is_exam);
@@ -386,6 +391,9 @@ void StartPage::choose(const TrainerChoice& choice) {
   };
   select(*needle_, choice.needle);
   select(*model_, choice.force_model);
+  const QString breathing = to_qt(choice.breathing);
+  if (breathing_->findData(breathing) < 0) breathing_->addItem(breathing, breathing);
+  select(*breathing_, choice.breathing);
   devices_->choose(choice.needle_device, choice.probe_device);
   exam_->set_number(choice.exam_number);
   seeded_ = choice;
@@ -405,6 +413,7 @@ TrainerChoice StartPage::choice() const {
     if (choice.patient == seeded_.patient) choice.patient_seed = seeded_.patient_seed;
     choice.needle = to_std(needle_->currentData().toString());
     choice.force_model = to_std(model_->currentData().toString());
+    choice.breathing = to_std(breathing_->currentData().toString());
   }
   return choice;
 }

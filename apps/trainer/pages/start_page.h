@@ -80,9 +80,10 @@ class StartPage : public QWidget {
   NextExerciseCard* next_ = nullptr;
   FirstStepsCard* first_steps_ = nullptr;
   DeviceChoice* devices_ = nullptr;
-  QFormLayout* tool_form_ = nullptr;  ///< Needle and forces; hidden in an exam.
+  QFormLayout* tool_form_ = nullptr;  ///< Needle, forces and breathing; hidden in an exam.
   QComboBox* needle_ = nullptr;
   QComboBox* model_ = nullptr;
+  QComboBox* breathing_ = nullptr;
   QPushButton* start_ = nullptr;
   QLabel* title_ = nullptr;
   QFrame* recovery_ = nullptr;

@@ -24,6 +24,7 @@ cases::CaseChoice TrainerFlow::case_choice(const TrainerChoice& choice) {
   // A patient of the case builder contains its own task.
   result.options.task = cases::has_own_task(choice.patient) ? std::string() : choice.task;
   result.options.needle = choice.needle;
+  if (choice.mode != TrainingMode::kExam) result.options.breathing = choice.breathing;
   result.patient_source = choice.patient;
   result.patient_seed = choice.patient_seed;
   result.force_model = choice.force_model;

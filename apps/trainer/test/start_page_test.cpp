@@ -71,6 +71,19 @@ TEST_F(StartPageTest, ExamUsesTheTasksNeedleAndForceModel) {
   EXPECT_TRUE(page.findChild<QWidget*>(QStringLiteral("force-model"))->isEnabled());
 }
 
+TEST_F(StartPageTest, BreathingIsChosenOutsideExamsOnly) {
+  StartPage page;
+  EXPECT_EQ(page.choice().breathing, "");
+  TrainerChoice wanted;
+  for (const char* breathing : {"none", "deep", "14,rate=18"}) {
+    wanted.breathing = breathing;
+    page.choose(wanted);
+    EXPECT_EQ(page.choice().breathing, breathing);
+  }
+  page.findChild<QAbstractButton*>(QStringLiteral("difficulty-exam"))->click();
+  EXPECT_EQ(page.choice().breathing, "");
+}
+
 TEST_F(StartPageTest, AnExamHasADifficultyAndANumber) {
   StartPage page;
   page.resize(1280, 700);

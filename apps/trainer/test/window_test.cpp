@@ -159,7 +159,10 @@ void expect_signed_exam(const std::filesystem::path& state) {
 // By keys alone, by mouse from the start page to the score and again; the replay; the case builder beside; the help
 // levels.
 TEST_F(WindowTest, RunsABiopsyFromStartPageToScore) {
-  expect_played(play({"keyboard.txt", "biopsy.txt", "transducer.txt", "case_builder.txt", "help_levels.txt"}));
+  // What is not about breathing has no time limit of a held breath.
+  const QStringList rests{QStringLiteral("--breathing"), QStringLiteral("none")};
+  expect_played(play({"keyboard.txt", "transducer.txt", "case_builder.txt", "help_levels.txt"}, rests));
+  expect_played(play({"biopsy.txt"}));
 }
 
 // A device that is not there, a killed server, stopped forces, the question before the end.
@@ -209,7 +212,7 @@ TEST_F(WindowTest, EveryPageFitsSmallScreensAndGermanText) {
 }
 
 TEST_F(WindowTest, APersonsAttemptsAreRecordedAndCompared) {
-  expect_played(play({"person.txt"}));
+  expect_played(play({"person.txt"}, {QStringLiteral("--breathing"), QStringLiteral("none")}));
   auto repository =
       results::Repository::open({folder.filePath(QStringLiteral("data/trocar/results.sqlite")).toStdString(), {}});
   ASSERT_TRUE(repository) << repository.error().text();
@@ -324,7 +327,8 @@ TEST_F(WindowTest, ABileDuctIsPuncturedUnderFluoroscopy) {
   ASSERT_TRUE(script.open(QIODevice::ReadOnly));
   const QString here = QString::fromUtf8(script.readAll()).replace(QStringLiteral("FOLDER"), folder.path());
   expect_played(run({QStringLiteral("--task"), QStringLiteral("ptcd"), QStringLiteral("--patient"),
-                     QStringLiteral("ptcd-1"), QStringLiteral("--script"), write("fluoroscopy.txt", here.toUtf8())}));
+                     QStringLiteral("ptcd-1"), QStringLiteral("--breathing"), QStringLiteral("none"),
+                     QStringLiteral("--script"), write("fluoroscopy.txt", here.toUtf8())}));
   const auto image = [this](const char* name) { return xray_in(folder.filePath(QString::fromUtf8(name))); };
   const QImage live = image("live.png"), filled = image("filled.png"), empty = image("empty.png"),
                none = image("none.png"), again = image("filled_again.png");

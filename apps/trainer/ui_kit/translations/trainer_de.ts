@@ -3589,6 +3589,22 @@ Nachlauf: Abstand, um den das Instrument hinter der Hand zurückbleibt.</transla
         <translation>Wie in der Aufgabe</translation>
     </message>
     <message>
+        <source>Breathing</source>
+        <translation>Atmung</translation>
+    </message>
+    <message>
+        <source>None</source>
+        <translation>Keine</translation>
+    </message>
+    <message>
+        <source>Quiet</source>
+        <translation>Ruhig</translation>
+    </message>
+    <message>
+        <source>Deep</source>
+        <translation>Tief</translation>
+    </message>
+    <message>
         <source>Insertion model</source>
         <translation>Einstichmodell</translation>
     </message>

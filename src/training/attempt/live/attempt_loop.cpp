@@ -63,7 +63,7 @@ AttemptLoop::AttemptLoop(AttemptCase the_case, LoopOptions options, AttemptOpera
 
 void AttemptLoop::prepare() {
   breathing_ = case_.the_case->breathing;
-  breathing_.begins_s = seconds(clock_.now());
+  breathing_.begins_s += seconds(clock_.now());
   if (!performer_.parameters.empty()) needle_.server->set_parameters(as_command(performer_.parameters.front()));
   needle_.server->prepare(
       {scene_of(case_, performer_.force_model, options_, breathing_, "needle"), hand_target(command_, 0.0)});
@@ -144,8 +144,10 @@ Status AttemptLoop::take_requests(Recording& recording, AttemptRequests& request
   return {};
 }
 
-/// Both servers get the drive that goes on where the old one is.
+/// To hold the breath or to breathe; other actions are nothing to the patient's breath. Both servers get the drive that
+/// goes on where the old one is.
 void AttemptLoop::ask_patient(tasks::ActionKind action) {
+  if (action != tasks::ActionKind::kHoldBreath && action != tasks::ActionKind::kBreathe) return;
   const double now_s = seconds(clock_.now());
   const motion::MotionDrive next = action == tasks::ActionKind::kHoldBreath ? motion::asked_to_hold(breathing_, now_s)
                                                                             : motion::released(breathing_, now_s);
@@ -157,8 +159,7 @@ void AttemptLoop::ask_patient(tasks::ActionKind action) {
 
 Status AttemptLoop::act(Recording& recording, const tasks::ActionRequest& request) {
   TROCAR_TRY(const auto action, recording.record.act(request));
-  if (action && (action->kind == tasks::ActionKind::kHoldBreath || action->kind == tasks::ActionKind::kBreathe))
-    ask_patient(action->kind);
+  if (action) ask_patient(action->kind);
   if (!recording.watch) return {};
   recording.watch->take_actions();
   constexpr double kLess_mm = 0.5;

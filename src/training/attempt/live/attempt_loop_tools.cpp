@@ -75,6 +75,7 @@ Status AttemptLoop::record(Recording& recording, const std::vector<link::Numbere
       TROCAR_TRY_STATUS(live.take_unseen(numbered.sample));
     } else {
       TROCAR_TRY(goes_on, live.take(numbered.sample));
+      if (goes_on && live.command().action) ask_patient(live.command().action->kind);
     }
     TROCAR_TRY_STATUS(recording.record.note_scene(numbered.scene, needle_.server->scenes()));
     if (numbered.shape) {

@@ -41,7 +41,7 @@ TEST(Level, ReplacesTheBreathingOfTheTask) {
   EXPECT_EQ(breathing_mm("liver-biopsy", ""), 10.0);
   EXPECT_EQ(breathing_mm("liver-biopsy", "basic"), 4.0);
   EXPECT_EQ(breathing_mm("liver-biopsy", "hard"), 18.0);
-  EXPECT_EQ(breathing_mm("ptcd", ""), 10.0);
+  EXPECT_EQ(breathing_mm("ptcd", "hard"), 0.0) << "a level without it";
   EXPECT_EQ(breathing_mm("lumbar-puncture", ""), 0.0);
   const TemporaryFolder folder;
   const std::string file = folder / "deep.toml";
