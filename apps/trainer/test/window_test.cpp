@@ -159,10 +159,7 @@ void expect_signed_exam(const std::filesystem::path& state) {
 // By keys alone, by mouse from the start page to the score and again; the replay; the case builder beside; the help
 // levels.
 TEST_F(WindowTest, RunsABiopsyFromStartPageToScore) {
-  // What is not about breathing has no time limit of a held breath.
-  const QStringList rests{QStringLiteral("--breathing"), QStringLiteral("none")};
-  expect_played(play({"keyboard.txt", "transducer.txt", "case_builder.txt", "help_levels.txt"}, rests));
-  expect_played(play({"biopsy.txt"}));
+  expect_played(play({"keyboard.txt", "biopsy.txt", "transducer.txt", "case_builder.txt", "help_levels.txt"}));
 }
 
 // A device that is not there, a killed server, stopped forces, the question before the end.

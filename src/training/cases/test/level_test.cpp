@@ -38,7 +38,7 @@ TEST(Level, ReplacesTheBreathingOfTheTask) {
     const auto made = load_tables(options);
     return made ? made->task.breathing_mm : -1.0;
   };
-  EXPECT_EQ(breathing_mm("liver-biopsy", ""), 10.0);
+  EXPECT_EQ(breathing_mm("liver-biopsy", ""), 0.0);
   EXPECT_EQ(breathing_mm("liver-biopsy", "basic"), 4.0);
   EXPECT_EQ(breathing_mm("liver-biopsy", "hard"), 18.0);
   EXPECT_EQ(breathing_mm("ptcd", "hard"), 0.0) << "a level without it";

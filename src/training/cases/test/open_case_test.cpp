@@ -50,13 +50,14 @@ TEST_F(OpenedCase, BreathesAsTheTaskSays) {
   const auto breathing = [](const std::string& text, std::uint64_t seed, std::optional<double> held_phase = {}) {
     CaseOptions options;
     options.breathing = text;
+    options.level = "basic";  // 4 mm
     options.seed = seed;
     options.held_phase = held_phase;
     return prepare_case(opened->the_case.patient, options)->breathing;
   };
   const motion::MotionDrive quiet = breathing("", 5);
   EXPECT_TRUE(motion::moves(quiet));
-  EXPECT_EQ(quiet, breathing("10", 5)) << "said by the task or by the options";
+  EXPECT_EQ(quiet, breathing("4", 5)) << "said by the task or by the options";
   EXPECT_NE(quiet, breathing("", 6)) << "another attempt, other breaths";
   EXPECT_LE(quiet.begins_s, 0.0);
   EXPECT_GT(quiet.begins_s, -quiet.period_s);
@@ -64,7 +65,9 @@ TEST_F(OpenedCase, BreathesAsTheTaskSays) {
   EXPECT_TRUE(breathing("", 5, 0.5).is_held);
   auto still = std::make_shared<anatomy::VirtualPatient>(*opened->the_case.patient);
   still->motion = nullptr;
-  EXPECT_FALSE(motion::moves(prepare_case(still, {})->breathing)) << "a patient without a model rests";
+  CaseOptions basic;
+  basic.level = "basic";
+  EXPECT_FALSE(motion::moves(prepare_case(still, basic)->breathing)) << "a patient without a model rests";
 }
 
 TEST_F(OpenedCase, PredictsThreePunctures) {
