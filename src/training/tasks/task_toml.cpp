@@ -24,34 +24,11 @@ class TaskReader {
   TaskReader(const config::TomlTable& document, bool is_whole) : document_(document), is_whole_(is_whole) {}
 
   Status read(Task& task) const {
-    TROCAR_TRY_STATUS(document_.check_keys({"base",
-                                            "title",
-                                            "organ",
-                                            "target_tissues",
-                                            "needle",
-                                            "force_model",
-                                            "ultrasound_engine",
-                                            "breathing_mm",
-                                            "path",
-                                            "parenchymal",
-                                            "scoring",
-                                            "risks",
-                                            "target",
-                                            "entry_zone",
-                                            "expert_path",
-                                            "exam",
-                                            "needles",
-                                            "guidance",
-                                            "confirmed_by",
-                                            "phases",
-                                            "pain",
-                                            "bevel",
-                                            "highest_entry",
-                                            "levels",
-                                            "level",
-                                            "cores",
-                                            "posture",
-                                            "harms"}));
+    TROCAR_TRY_STATUS(document_.check_keys(
+        {"base",  "title",         "organ",   "target_tissues", "needle",       "force_model", "ultrasound_engine",
+         "path",  "parenchymal",   "scoring", "risks",          "target",       "entry_zone",  "expert_path",
+         "exam",  "breathing_mm",  "needles", "guidance",       "confirmed_by", "phases",      "pain",
+         "bevel", "highest_entry", "levels",  "level",          "cores",        "posture",     "harms"}));
     if (!is_whole_) TROCAR_TRY_STATUS(detail::read_level_of(document_, task));  // before keys that replace its numbers
     TROCAR_TRY_STATUS(text(document_, "title", task.title));
     TROCAR_TRY_STATUS(text(document_, "organ", task.organ));

@@ -1,6 +1,6 @@
 # The keyboard alone. Keys by their X names: Prior and Next are Page up and Page down.
 shot start
-for control in person new-person skip-first-steps first-steps tasks patients open-folder help needle forces add-device needle-device probe-device open-first-steps start; do
+for control in person new-person skip-first-steps first-steps tasks patients open-folder help needle forces breathing add-device needle-device probe-device open-first-steps start; do
   key Tab
   [[ $control != help ]] || key Down Up  # assisted, and back to guided
   shot "start-$control"
