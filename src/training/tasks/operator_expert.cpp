@@ -57,8 +57,9 @@ class Expert final : public Operator {
     double speed_mm_s = 0.0;
     switch (step_) {
       case Step::kAsk:
-        if (!breath_.waits(view, hand_.elapsed_s())) enter(Step::kApproach);
-        break;
+        if (breath_.waits(view, hand_.elapsed_s())) break;
+        enter(Step::kApproach);
+        [[fallthrough]];
       case Step::kApproach:
         speed_mm_s = hand_.wanted_mm() < -kTouching_mm_s ? kApproach_mm_s : kTouching_mm_s;
         if (hand_.is_touching() || target_left_mm() < kFineZone_mm) enter(Step::kPause);

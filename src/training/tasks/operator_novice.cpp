@@ -190,8 +190,9 @@ class Novice final : public Operator {
   double step(const OperatorView& view) noexcept {
     switch (step_) {
       case Step::kAsk:
-        if (!breath_.waits(view, hand_.elapsed_s()) || in_step_s() > before_start_s_) enter(Step::kAdvance);
-        return 0.0;
+        if (breath_.waits(view, hand_.elapsed_s()) && in_step_s() <= before_start_s_) return 0.0;
+        enter(Step::kAdvance);
+        return advance();
       case Step::kAdvance:
         return advance();
       case Step::kBackOut:
